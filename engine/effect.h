@@ -1,0 +1,68 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/**
+ * @file engine/effect.h
+ * @brief An effect is one constant record and one .c file; a scene pays only for those it names.
+ *
+ * Layer 3. pw_schedule_build copies the hooks of the scene's effects into one array sorted by
+ * stage; ties keep the order of engine/effects.def, never that of the scene file. An effect that
+ * is not named allocates nothing and runs nothing.
+ */
+#ifndef PW_ENGINE_EFFECT_H
+#define PW_ENGINE_EFFECT_H
+
+#include "engine/core/archive.h"
+#include "engine/core/record.h"
+#include "engine/scene.h"
+
+typedef struct pw_sim pw_sim;
+
+/** Where in a step a hook runs (engine/step_explicit.c). */
+typedef enum pw_stage {
+  PW_STAGE_BEGIN,      /**< weights are known, nodes still empty */
+  PW_STAGE_P2G,        /**< after the points' scatter: further scatters (own passes) */
+  PW_STAGE_NODE_FORCE, /**< add to the nodes' force; momentum and mass are in the records */
+  PW_STAGE_CONSTRAINT, /**< change velocities at t(n+1); FORCE slots hold v(n) */
+  PW_STAGE_REMAP_P2G,  /**< MUSL: points' remapped momentum is in slot REMAP; add further ones */
+  PW_STAGE_REMAP,      /**< MUSL: the same constraints on the remapped velocities */
+  PW_STAGE_MESH,       /**< points and interfaces have moved */
+  PW_STAGE_END,        /**< probes, records; sim->time is t(n+1) */
+  PW_STAGE_COUNT
+} pw_stage;
+
+typedef pw_status (*pw_hook_fn)(pw_sim *sim, void *ctx);
+typedef struct pw_hook {
+  pw_stage stage;
+  pw_hook_fn fn;
+} pw_hook; /**< a list ends with {0, NULL} */
+
+struct pw_effect {
+  const char *name;      /**< key of its section in the scene file */
+  const char *brief;     /**< one line for `pilewright list` */
+  bool many;             /**< the section is a list; each entry is one instance */
+  bool own_velocity_fields; /**< asks for one velocity field per body (contact) */
+  uint64_t point_fields; /**< bits of pw_field_id to allocate */
+  const pw_key *keys;    /**< offsets into its parameter struct */
+  const pw_hook *hooks;
+  /** @brief Rules across keys; the section's name is added by the caller. May be NULL.
+   *  @return PW_OK or PW_ERR_SCENE. */
+  pw_status (*check)(const pw_scene *scene, const void *param);
+  /** @brief Allocate its context. Points, mesh, nodes and blocks of @p sim exist; points have
+   *  their initial mass, position and stress. May be NULL (context NULL).
+   *  @param[in] param its parameter struct, borrowed for the life of the simulation */
+  pw_status (*create)(pw_sim *sim, const void *param, void **ctx);
+  void (*destroy)(void **ctx);
+  /** @brief Columns of history.csv, same names every time; may be NULL. */
+  void (*history)(const pw_sim *sim, void *ctx, pw_record *row);
+  /** @brief Items of summary.json's `results`; may be NULL. */
+  void (*results)(const pw_sim *sim, void *ctx, pw_record *out);
+  /** @brief Save or load its state, under its own name; may be NULL. */
+  pw_status (*archive)(pw_sim *sim, void *ctx, pw_archive *ar);
+};
+
+/** @brief The effect of that name, or NULL. */
+const pw_effect *pw_effect_find(const char *name);
+
+/** @brief The @p i-th effect of engine/effects.def, or NULL past its end. */
+const pw_effect *pw_effect_at(int i);
+
+#endif /* PW_ENGINE_EFFECT_H */

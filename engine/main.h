@@ -1,0 +1,28 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/**
+ * @file engine/main.h
+ * @brief Parts of the program `pilewright` (layer 5: may use everything).
+ */
+#ifndef PW_ENGINE_MAIN_H
+#define PW_ENGINE_MAIN_H
+
+#include "engine/core/types.h"
+
+/**
+ * @brief Bind the OpenMP threads of a run to cores.
+ *
+ * The OpenMP runtime reads its settings when the program is loaded, so the program starts itself
+ * once more with OMP_PROC_BIND and OMP_PLACES set. It does not when the user has set one of them,
+ * when there is one thread only, or when the run leaves half of the processors or more to others:
+ * bound runs side by side would end up on the same cores.
+ * @param[in] argv    of main()
+ * @param[in] threads asked for; 0: the runtime's choice
+ * @return true when threads are bound.
+ */
+bool pw_main_bind_threads(char **argv, int threads);
+
+/** @brief Help of the program, or of @p command when it names one. @return NULL when it names
+ *  none. */
+const char *pw_main_help(const char *command);
+
+#endif /* PW_ENGINE_MAIN_H */

@@ -1,0 +1,63 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/**
+ * @file engine/nodes.h
+ * @brief Nodal records of each velocity field (layer 3).
+ *
+ * A node of a field is one record of PW_NODE reals, one cache line, so that a vertex scatters to
+ * it with one vector operation. With a contact effect each body has its own velocity field; the
+ * record of node k of field f is at rec[(f * nnode + k) * PW_NODE]. What a slot holds changes in
+ * the course of a step (engine/step_explicit.c):
+ *
+ *   slot                      after P2G        after momentum update     after remap (MUSL)
+ *   PW_NODE_MASS              mass             mass                      mass
+ *   PW_NODE_VEL, +1           momentum         velocity at t(n+1)        same
+ *   PW_NODE_FORCE, +1         force            velocity at t(n), later   same
+ *                                              increment of velocity
+ *   PW_NODE_REMAP, +1         0                0                         remapped velocity
+ *   PW_NODE_ACTIVE            0                1 when mass > cut-off     same
+ */
+#ifndef PW_ENGINE_NODES_H
+#define PW_ENGINE_NODES_H
+
+#include "engine/core/status.h"
+
+enum {
+  PW_NODE = 8,        /**< reals in a record */
+  PW_NODE_MASS = 0,   /**< kg (per metre or radian) */
+  PW_NODE_VEL = 1,    /**< kg m/s, then m/s */
+  PW_NODE_FORCE = 3,  /**< N, then m/s: see above */
+  PW_NODE_REMAP = 5,  /**< kg m/s, then m/s */
+  PW_NODE_ACTIVE = 7, /**< 1.0 or 0.0 */
+};
+
+typedef struct pw_nodes {
+  pw_idx nnode; /**< nodes of the grid */
+  int nfield;   /**< velocity fields */
+  pw_real *rec; /**< [nfield][nnode][PW_NODE] */
+} pw_nodes;
+
+pw_status pw_nodes_create(pw_idx nnode, int nfield, pw_nodes *out);
+void pw_nodes_destroy(pw_nodes *nodes);
+
+/** @brief Records of field @p f: [nnode][PW_NODE]. */
+static inline pw_real *pw_nodes_field(const pw_nodes *nodes, int f)
+{
+  return nodes->rec + (pw_off)f * nodes->nnode * PW_NODE;
+}
+
+/** @brief Set every record to zero; threaded. */
+void pw_nodes_clear(pw_nodes *nodes);
+
+/**
+ * @brief Momentum to velocity, forces to the step's velocity: v(n) = p/m, v(n+1) = v(n) + dt f/m.
+ * @param[in] cut_off nodes with less mass take no part: velocity zero, not active; kg
+ */
+void pw_nodes_momentum(pw_nodes *nodes, pw_real dt, pw_real cut_off);
+
+/** @brief After the constraints: slot FORCE becomes v(n+1) - v(n), what the points receive. */
+void pw_nodes_increment(pw_nodes *nodes);
+
+/** @brief Remapped momentum to velocity (MUSL). */
+void pw_nodes_remap(pw_nodes *nodes);
+
+#endif /* PW_ENGINE_NODES_H */

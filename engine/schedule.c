@@ -1,0 +1,55 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "engine/schedule.h"
+
+#include <stdio.h>
+
+static void append_effect(pw_sim *sim, int e, pw_stage stage)
+{
+  const pw_effect *type = sim->scene.effect[e].type;
+  for (const pw_hook *h = type->hooks; h && h->fn; h++) {
+    if (h->stage == stage) {
+      sim->schedule.hook[sim->schedule.n++] =
+          (pw_scheduled){stage, h->fn, sim->ctx[e], type->name};
+    }
+  }
+}
+
+void pw_schedule_build(pw_sim *sim)
+{
+  sim->schedule = (pw_schedule){0};
+  for (int stage = 0; stage < PW_STAGE_COUNT; stage++) {
+    sim->schedule.start[stage] = sim->schedule.n;
+    for (int rank = 0; pw_effect_at(rank); rank++) {
+      for (int e = 0; e < sim->scene.neffect; e++) {
+        if (sim->scene.effect[e].type == pw_effect_at(rank)) {
+          append_effect(sim, e, (pw_stage)stage);
+        }
+      }
+    }
+  }
+  sim->schedule.start[PW_STAGE_COUNT] = sim->schedule.n;
+}
+
+pw_status pw_schedule_run(pw_sim *sim, pw_stage stage)
+{
+  const pw_schedule *s = &sim->schedule;
+  for (int k = s->start[stage]; k < s->start[stage + 1]; k++) {
+    PW_TRY(s->hook[k].fn(sim, s->hook[k].ctx));
+  }
+  return PW_OK;
+}
+
+void pw_sim_schedule_text(const pw_sim *sim, char *text, size_t size)
+{
+  static const char *const names[PW_STAGE_COUNT] = {
+      "begin", "p2g", "node_force", "constraint", "remap_p2g", "remap", "mesh", "end"};
+  size_t used = 0;
+  if (size > 0) {
+    text[0] = '\0';
+  }
+  for (int k = 0; k < sim->schedule.n && used < size; k++) {
+    const pw_scheduled *h = &sim->schedule.hook[k];
+    int n = snprintf(text + used, size - used, "%s: %s\n", names[h->stage], h->effect);
+    used += n > 0 ? (size_t)n : 0;
+  }
+}

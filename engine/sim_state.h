@@ -1,0 +1,97 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/**
+ * @file engine/sim_state.h
+ * @brief Inside of a simulation, for the engine's own files and its effects (layer 3).
+ */
+#ifndef PW_ENGINE_SIM_STATE_H
+#define PW_ENGINE_SIM_STATE_H
+
+#include "engine/effect.h"
+#include "engine/nodes.h"
+#include "engine/sim.h"
+#include "kernels/transfer.h"
+#include "partition/blocks.h"
+
+/** A hook of the schedule with the context of its effect. */
+typedef struct pw_scheduled {
+  pw_stage stage;
+  pw_hook_fn fn;
+  void *ctx;
+  const char *effect;
+} pw_scheduled;
+
+typedef struct pw_schedule {
+  int n;
+  int start[PW_STAGE_COUNT + 1]; /**< hooks of stage s: [start[s], start[s + 1]) */
+  pw_scheduled hook[PW_MAX_EFFECTS * PW_STAGE_COUNT];
+} pw_schedule;
+
+/** Sums a block keeps for itself; added in block order, so the totals are the same on any number
+ *  of threads. */
+typedef struct pw_block_sums {
+  pw_real strain_work; /**< J per radian or metre, this step */
+  pw_real speed_max;   /**< max of c + |v|; m/s */
+  pw_off limited, rebuilt;
+  pw_idx bad;             /**< first point whose stress or domain failed, or -1 */
+  pw_status bad_status;
+  pw_weights_report weights;
+  pw_material_counts material;
+  char pad[PW_ALIGN]; /* neighbours in the array belong to other threads */
+} pw_block_sums;
+
+/** A body as the engine uses it. */
+typedef struct pw_body {
+  const char *name;
+  const pw_material *model;
+  const pw_real *param;
+  int field;               /**< velocity field its points scatter to */
+  bool prescribed;         /**< its motion is given (prescribed_motion) */
+  pw_real prescribed_v[2]; /**< m/s, this step */
+  pw_real start[2];        /**< centre of mass at the start; m */
+} pw_body;
+
+struct pw_sim {
+  pw_scene scene;
+  int threads;
+  pw_mesh mesh;
+  pw_points points;
+  pw_nodes nodes;
+  pw_blocks blocks;
+  const pw_kernels *kernels;
+  pw_transfer transfer; /**< the arrays above, as kernels see them */
+  int nbody;
+  pw_body body[PW_MAX_BODIES];
+  pw_schedule schedule;
+  void *ctx[PW_MAX_EFFECTS]; /**< contexts, same order as scene.effect */
+
+  pw_real time;    /**< s, at the end of the last step */
+  pw_off step;     /**< steps made */
+  pw_real dt;      /**< of the step being made; s */
+  pw_real dt_next; /**< stable step for the next; s */
+  pw_real dt_min, dt_max;
+  pw_real dt_contact; /**< largest step a penalty contact allows, set by it each step; 0: none */
+  pw_real measure;    /**< 2 pi (axisymmetric) or 1: times a per-radian value = whole body */
+  pw_real mass_cut_off; /**< kg */
+  pw_real load_factor;  /**< of gravity now, 0..1: the ramp; 1 without gravity */
+  int node_slot;        /**< PW_NODE_VEL or PW_NODE_REMAP: what a constraint hook is to change */
+  bool sort_needed;        /**< points are not in the order of their blocks */
+
+  pw_energy energy;
+  pw_block_sums *sums; /**< [nblock] */
+  pw_real stage_wall[PW_TIMER_COUNT];
+  pw_real wall;
+  pw_off sorts, limited, rebuilt, clamped;
+  pw_material_counts material;
+  pw_real *limit;  /**< [n by id] half diagonal allowed to each domain; m; NULL without CPDI */
+  pw_idx *from;    /**< [n] sort scratch */
+  pw_idx *elem;    /**< [n] sort scratch */
+  pw_real *scratch; /**< [ld] */
+};
+
+/** @brief Run the hooks of @p stage in order. @return the first status that is not PW_OK. */
+pw_status pw_schedule_run(pw_sim *sim, pw_stage stage);
+
+/** @brief Context of the first effect of that name in the scene, or NULL. */
+void *pw_sim_effect_ctx(const pw_sim *sim, const char *name);
+
+#endif /* PW_ENGINE_SIM_STATE_H */

@@ -1,0 +1,123 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "engine/step_explicit.h"
+
+#include <omp.h>
+
+#include "engine/assemble.h"
+#include "engine/update.h"
+
+/* Charge the time since the last call to a stage. */
+static void lap(pw_sim *sim, pw_timer stage, double *since)
+{
+  double now = omp_get_wtime();
+  sim->stage_wall[stage] += now - *since;
+  *since = now;
+}
+
+/* No radial motion on the axis of symmetry: nodes at r = 0, slot and, at the same time, v(n). */
+static void axis_condition(pw_sim *sim, int slot)
+{
+  if (sim->scene.geometry != PW_AXI || sim->mesh.origin[0] > 0.0) {
+    return;
+  }
+  for (int f = 0; f < sim->nodes.nfield; f++) {
+    pw_real *rec = pw_nodes_field(&sim->nodes, f);
+    for (pw_idx j = 0; j < sim->mesh.nodes[1]; j++) {
+      pw_real *r = rec + (pw_off)j * sim->mesh.nodes[0] * PW_NODE;
+      r[slot] = 0.0;
+      r[PW_NODE_FORCE] = slot == PW_NODE_VEL ? 0.0 : r[PW_NODE_FORCE];
+    }
+  }
+}
+
+static pw_status constrain(pw_sim *sim, pw_stage stage, int slot)
+{
+  sim->node_slot = slot;
+  axis_condition(sim, slot);
+  return pw_schedule_run(sim, stage);
+}
+
+/* Points to grid, forces, new nodal velocities under all constraints. */
+static pw_status grid_velocity(pw_sim *sim, double *clock)
+{
+  pw_nodes_clear(&sim->nodes);
+  lap(sim, PW_TIMER_NODES, clock);
+  pw_assemble_coloured(&sim->blocks, sim->threads, pw_block_p2g, sim);
+  lap(sim, PW_TIMER_P2G, clock);
+  PW_TRY(pw_schedule_run(sim, PW_STAGE_P2G));
+  PW_TRY(pw_schedule_run(sim, PW_STAGE_NODE_FORCE));
+  lap(sim, PW_TIMER_EFFECTS, clock);
+  pw_nodes_momentum(&sim->nodes, sim->dt, sim->mass_cut_off);
+  lap(sim, PW_TIMER_NODES, clock);
+  PW_TRY(constrain(sim, PW_STAGE_CONSTRAINT, PW_NODE_VEL));
+  lap(sim, PW_TIMER_EFFECTS, clock);
+  pw_nodes_increment(&sim->nodes);
+  lap(sim, PW_TIMER_NODES, clock);
+  return PW_OK;
+}
+
+/* USF: stress from the velocities at the start of the step. */
+static pw_status stress_first(pw_sim *sim, double *clock)
+{
+  pw_nodes_clear(&sim->nodes);
+  pw_assemble_coloured(&sim->blocks, sim->threads, pw_block_p2g_momentum, sim);
+  PW_TRY(pw_schedule_run(sim, PW_STAGE_P2G));
+  pw_nodes_momentum(&sim->nodes, 0.0, sim->mass_cut_off);
+  PW_TRY(constrain(sim, PW_STAGE_REMAP, PW_NODE_VEL));
+  lap(sim, PW_TIMER_P2G, clock);
+  pw_update_pass pass = {sim, PW_NODE_VEL, false, true};
+  pw_for_blocks(&sim->blocks, sim->threads, pw_block_update, &pass);
+  lap(sim, PW_TIMER_G2P_STRESS, clock);
+  return pw_update_collect(sim);
+}
+
+/* MUSL: the updated points' momentum back on the grid. */
+static pw_status remap_velocity(pw_sim *sim, double *clock)
+{
+  pw_assemble_coloured(&sim->blocks, sim->threads, pw_block_velocity_remap, sim);
+  lap(sim, PW_TIMER_REMAP, clock);
+  PW_TRY(pw_schedule_run(sim, PW_STAGE_REMAP_P2G));
+  lap(sim, PW_TIMER_EFFECTS, clock);
+  pw_nodes_remap(&sim->nodes);
+  lap(sim, PW_TIMER_NODES, clock);
+  PW_TRY(constrain(sim, PW_STAGE_REMAP, PW_NODE_REMAP));
+  lap(sim, PW_TIMER_EFFECTS, clock);
+  return PW_OK;
+}
+
+pw_status pw_step_explicit(pw_sim *sim)
+{
+  const int update = sim->scene.method.update;
+  double clock = omp_get_wtime();
+  pw_update_pass pass = {sim, PW_NODE_VEL, true, update != PW_USF};
+
+  if (sim->sort_needed) {
+    PW_TRY(pw_update_sort(sim));
+    lap(sim, PW_TIMER_SORT, &clock);
+  }
+  PW_TRY(pw_schedule_run(sim, PW_STAGE_BEGIN));
+  lap(sim, PW_TIMER_EFFECTS, &clock);
+  if (update == PW_USF) {
+    PW_TRY(stress_first(sim, &clock));
+  }
+  PW_TRY(grid_velocity(sim, &clock));
+  if (update == PW_MUSL) {
+    PW_TRY(remap_velocity(sim, &clock));
+    pass.slot = PW_NODE_REMAP;
+  } else {
+    pw_for_blocks(&sim->blocks, sim->threads, pw_block_velocity, sim);
+    lap(sim, PW_TIMER_REMAP, &clock);
+  }
+  pw_for_blocks(&sim->blocks, sim->threads, pw_block_update, &pass);
+  lap(sim, PW_TIMER_G2P_STRESS, &clock);
+  PW_TRY(pw_schedule_run(sim, PW_STAGE_MESH));
+  sim->time += sim->dt;
+  sim->step++;
+  pw_status status = update == PW_USF ? pw_update_check(sim) : pw_update_collect(sim);
+  lap(sim, PW_TIMER_EFFECTS, &clock);
+  if (status == PW_OK) {
+    status = pw_schedule_run(sim, PW_STAGE_END);
+  }
+  lap(sim, PW_TIMER_EFFECTS, &clock);
+  return status;
+}

@@ -1,0 +1,342 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "engine/update.h"
+
+#include <math.h>
+
+#include "engine/assemble.h"
+#include "engine/domain.h"
+
+/** Scratch of one batch of points; lives on the stack of its thread. */
+typedef struct {
+  pw_gradients grad;
+  pw_real dstrain[6 * PW_CHUNK], spin[3 * PW_CHUNK], dvol[PW_CHUNK];
+  pw_real left_cg[6 * PW_CHUNK], jac[PW_CHUNK], density[PW_CHUNK];
+  pw_real old_stress[6 * PW_CHUNK], wave_speed[PW_CHUNK];
+} batch;
+
+static void body_range(const pw_sim *sim, pw_idx block, int body, pw_idx *first, pw_idx *last)
+{
+  const pw_idx *start = sim->blocks.point_start + (pw_off)block * sim->nbody + body;
+  *first = start[0];
+  *last = start[1];
+}
+
+/* Call a kernel of the common shape for each body's range of a block. */
+typedef void (*range_kernel)(const pw_transfer *, pw_real *, pw_idx, pw_idx);
+
+static void each_body(pw_sim *sim, pw_idx block, range_kernel kernel)
+{
+  for (int b = 0; b < sim->nbody; b++) {
+    pw_idx first, last;
+    body_range(sim, block, b, &first, &last);
+    if (first < last) {
+      kernel(&sim->transfer, pw_nodes_field(&sim->nodes, sim->body[b].field), first, last);
+    }
+  }
+}
+
+void pw_block_p2g(void *ctx, pw_idx block)
+{
+  pw_sim *sim = ctx;
+  each_body(sim, block, sim->kernels->p2g);
+}
+
+void pw_block_p2g_momentum(void *ctx, pw_idx block)
+{
+  pw_sim *sim = ctx;
+  each_body(sim, block, sim->kernels->p2g_momentum);
+}
+
+static void velocity(pw_sim *sim, pw_idx block, bool remap)
+{
+  for (int b = 0; b < sim->nbody; b++) {
+    pw_idx first, last;
+    body_range(sim, block, b, &first, &last);
+    pw_real *rec = pw_nodes_field(&sim->nodes, sim->body[b].field);
+    sim->kernels->g2p_velocity(&sim->transfer, rec, first, last);
+    if (remap) {
+      sim->kernels->p2g_remap(&sim->transfer, rec, first, last);
+    }
+  }
+}
+
+void pw_block_velocity(void *ctx, pw_idx block) { velocity(ctx, block, false); }
+
+void pw_block_velocity_remap(void *ctx, pw_idx block) { velocity(ctx, block, true); }
+
+/* Deformation gradient F(n+1) = (I + grad du) F(n) (thesis eq. 2.28), volume, and the increments
+ * that materials take. Returns the first point with a volume ratio that is not positive, or -1. */
+static pw_idx deform(pw_sim *sim, batch *s, pw_idx first, pw_idx n)
+{
+  pw_points *p = &sim->points;
+  const pw_idx ld = p->ld, none = INT32_MAX;
+  pw_real *restrict f = p->def_grad + first, *restrict vol = p->vol + first;
+  const pw_real *restrict mass = p->mass + first;
+  pw_idx bad = none;
+#pragma omp simd reduction(min : bad)
+  for (pw_idx i = 0; i < n; i++) {
+    pw_real xx = s->grad.du[0][i], xy = s->grad.du[1][i], yx = s->grad.du[2][i];
+    pw_real yy = s->grad.du[3][i], zz = s->grad.du[4][i];
+    pw_real f0 = f[i], f1 = f[ld + i], f2 = f[2 * ld + i], f3 = f[3 * ld + i];
+    pw_real dj = ((1.0 + xx) * (1.0 + yy) - xy * yx) * (1.0 + zz);
+    pw_idx bad_i = dj > 0.0 && dj < PW_HUGE ? none : i; /* NaN counts as bad */
+    bad = bad_i < bad ? bad_i : bad;
+    f[i] = f0 + xx * f0 + xy * f2;
+    f[ld + i] = f1 + xx * f1 + xy * f3;
+    f[2 * ld + i] = f2 + yx * f0 + yy * f2;
+    f[3 * ld + i] = f3 + yx * f1 + yy * f3;
+    f[4 * ld + i] *= 1.0 + zz;
+    vol[i] *= dj;
+    s->dvol[i] = dj;
+    s->density[i] = mass[i] / vol[i];
+    s->dstrain[i] = xx;
+    s->dstrain[PW_CHUNK + i] = yy;
+    s->dstrain[2 * PW_CHUNK + i] = zz;
+    s->dstrain[3 * PW_CHUNK + i] = 0.5 * (xy + yx);
+    s->dstrain[4 * PW_CHUNK + i] = s->dstrain[5 * PW_CHUNK + i] = 0.0;
+    s->spin[i] = 0.5 * (xy - yx);
+    s->spin[PW_CHUNK + i] = s->spin[2 * PW_CHUNK + i] = 0.0;
+  }
+  return bad == none ? -1 : first + bad;
+}
+
+/* b = F F^T and J for materials that follow from the deformation gradient. */
+static void left_cauchy_green(const pw_sim *sim, batch *s, pw_idx first, pw_idx n)
+{
+  const pw_idx ld = sim->points.ld;
+  const pw_real *restrict f = sim->points.def_grad + first;
+#pragma omp simd
+  for (pw_idx i = 0; i < n; i++) {
+    pw_real xx = f[i], xy = f[ld + i], yx = f[2 * ld + i], yy = f[3 * ld + i], zz = f[4 * ld + i];
+    s->left_cg[i] = xx * xx + xy * xy;
+    s->left_cg[PW_CHUNK + i] = yx * yx + yy * yy;
+    s->left_cg[2 * PW_CHUNK + i] = zz * zz;
+    s->left_cg[3 * PW_CHUNK + i] = xx * yx + xy * yy;
+    s->left_cg[4 * PW_CHUNK + i] = s->left_cg[5 * PW_CHUNK + i] = 0.0;
+    s->jac[i] = (xx * yy - xy * yx) * zz;
+  }
+}
+
+/* Work of the mean stress over the step, and the fastest signal c + |v|. */
+static void sum_batch(const pw_sim *sim, const batch *s, pw_idx first, pw_idx n,
+                      pw_block_sums *sums)
+{
+  const pw_points *p = &sim->points;
+  const pw_idx ld = p->ld;
+  const pw_real *restrict sig = p->stress + first, *restrict vol = p->vol + first;
+  const pw_real *restrict v = p->v + first;
+  pw_real work = 0.0, speed = sums->speed_max;
+  for (pw_idx i = 0; i < n; i++) {
+    pw_real w = 0.0;
+    for (int c = 0; c < 4; c++) { /* xx yy zz xy: the others do no work in the plane */
+      pw_real twice = c == 3 ? 2.0 : 1.0;
+      w += twice * (sig[c * ld + i] + s->old_stress[c * PW_CHUNK + i]) *
+           s->dstrain[c * PW_CHUNK + i];
+    }
+    work += 0.5 * w * vol[i];
+    speed = pw_max(speed, s->wave_speed[i] + sqrt(v[i] * v[i] + v[ld + i] * v[ld + i]));
+  }
+  sums->strain_work += work;
+  sums->speed_max = speed;
+}
+
+static void set_bad(pw_block_sums *sums, pw_idx point, pw_status status)
+{
+  if (point >= 0 && sums->bad < 0) {
+    sums->bad = point;
+    sums->bad_status = status;
+  }
+}
+
+static void stress_batch(pw_sim *sim, const pw_body *body, batch *s, pw_idx first, pw_idx n,
+                         pw_block_sums *sums)
+{
+  pw_points *p = &sim->points;
+  for (int c = 0; c < 4; c++) {
+    for (pw_idx i = 0; i < n; i++) {
+      s->old_stress[c * PW_CHUNK + i] = p->stress[(pw_off)c * p->ld + first + i];
+    }
+  }
+  pw_stress_args args = {.n = n,
+                         .ld = p->ld,
+                         .ldi = PW_CHUNK,
+                         .dt = sim->dt,
+                         .dstrain = s->dstrain,
+                         .spin = s->spin,
+                         .dvol = s->dvol,
+                         .density = s->density,
+                         .stress = p->stress + first,
+                         .state = p->state ? p->state + first : NULL,
+                         .wave_speed = s->wave_speed,
+                         .counts = &sums->material,
+                         .bad = -1};
+  if (body->model->needs_left_cg) {
+    left_cauchy_green(sim, s, first, n);
+    args.left_cg = s->left_cg;
+    args.jac = s->jac;
+  }
+  if (body->model->update(body->param, &args) != PW_OK) {
+    set_bad(sums, first + args.bad, PW_RETRY_STRESS);
+  }
+  sum_batch(sim, s, first, n, sums);
+}
+
+static void clear_sums(pw_block_sums *sums)
+{
+  *sums = (pw_block_sums){.bad = -1, .weights = {-1, -1, -1, 0}};
+}
+
+static void update_body(const pw_update_pass *pass, batch *s, pw_idx block, int b)
+{
+  pw_sim *sim = pass->sim;
+  pw_block_sums *sums = &sim->sums[block];
+  const pw_body *body = &sim->body[b];
+  const pw_real *rec = pw_nodes_field(&sim->nodes, body->field);
+  pw_idx first, last;
+  body_range(sim, block, b, &first, &last);
+  for (; first < last; first += PW_CHUNK) {
+    pw_idx n = last - first < PW_CHUNK ? last - first : PW_CHUNK;
+    sim->kernels->g2p_gradient(&sim->transfer, rec, pass->slot, sim->dt, pass->move, first,
+                               first + n, &s->grad);
+    if (!pass->stress) {
+      continue;
+    }
+    set_bad(sums, deform(sim, s, first, n), PW_RETRY_DOMAIN_INVERTED);
+    stress_batch(sim, body, s, first, n, sums);
+    if (sim->limit) {
+      pw_domain_convect(sim, first, n, sums);
+    }
+  }
+}
+
+static void merge_weights(pw_weights_report *into, const pw_weights_report *from)
+{
+  into->lost = into->lost < 0 ? from->lost : into->lost;
+  into->overrun = into->overrun < 0 ? from->overrun : into->overrun;
+  into->inverted = into->inverted < 0 ? from->inverted : into->inverted;
+  into->clamped += from->clamped;
+}
+
+void pw_block_update(void *ctx, pw_idx block)
+{
+  const pw_update_pass *pass = ctx;
+  batch s;
+  if (pass->stress) {
+    clear_sums(&pass->sim->sums[block]);
+  }
+  for (int b = 0; b < pass->sim->nbody; b++) {
+    update_body(pass, &s, block, b);
+  }
+  pw_block_weights(pass->sim, block);
+}
+
+void pw_block_weights(void *ctx, pw_idx block)
+{
+  pw_sim *sim = ctx;
+  pw_weights_report report;
+  pw_idx first, last, unused;
+  body_range(sim, block, 0, &first, &unused);
+  body_range(sim, block, sim->nbody - 1, &unused, &last);
+  sim->kernels->weights(&sim->transfer, first, last, &report);
+  sim->sums[block].weights = (pw_weights_report){-1, -1, -1, 0};
+  merge_weights(&sim->sums[block].weights, &report);
+}
+
+void pw_block_wave_speed(void *ctx, pw_idx block)
+{
+  pw_sim *sim = ctx;
+  batch s = {0};
+  clear_sums(&sim->sums[block]);
+  for (int b = 0; b < sim->nbody; b++) {
+    pw_idx first, last;
+    body_range(sim, block, b, &first, &last);
+    for (; first < last; first += PW_CHUNK) {
+      pw_idx n = last - first < PW_CHUNK ? last - first : PW_CHUNK;
+      deform(sim, &s, first, n); /* gradients are zero: only density and increments are set */
+      stress_batch(sim, &sim->body[b], &s, first, n, &sim->sums[block]);
+    }
+  }
+}
+
+static pw_status fail_at(const pw_sim *sim, pw_idx i, pw_status status, const char *what)
+{
+  const pw_points *p = &sim->points;
+  const pw_scene_body *body = &sim->scene.body[p->body[i]];
+  return pw_error_set(status, __FILE__, __LINE__, __func__,
+                      "%s: point %d at (%.6g, %.6g) m, velocity (%.4g, %.4g) m/s, body %s, "
+                      "material %s, step %lld, time %.9g s",
+                      what, p->id[i], p->x[i], p->x[p->ld + i], p->v[i], p->v[p->ld + i],
+                      body->name, sim->scene.material[body->material].name, (long long)sim->step,
+                      sim->time);
+}
+
+static void add_counts(pw_material_counts *sum, const pw_material_counts *c)
+{
+  sum->substeps += c->substeps;
+  sum->rhs += c->rhs;
+  sum->rejected += c->rejected;
+  sum->forced += c->forced;
+  sum->cut_off += c->cut_off;
+}
+
+pw_status pw_update_check(pw_sim *sim)
+{
+  for (pw_idx k = 0; k < sim->blocks.nblock; k++) {
+    const pw_block_sums *s = &sim->sums[k];
+    sim->clamped += s->weights.clamped;
+    if (s->bad >= 0) {
+      return fail_at(sim, s->bad, s->bad_status, pw_status_text(s->bad_status));
+    }
+    if (s->weights.lost >= 0) {
+      return fail_at(sim, s->weights.lost, PW_ERR_POINT_LOST, "a point left the grid");
+    }
+    if (s->weights.inverted >= 0) {
+      return fail_at(sim, s->weights.inverted, PW_RETRY_DOMAIN_INVERTED, "a domain is inverted");
+    }
+    sim->sort_needed = sim->sort_needed || s->weights.overrun >= 0;
+  }
+  return PW_OK;
+}
+
+pw_status pw_update_collect(pw_sim *sim)
+{
+  pw_real speed = 0.0;
+  for (pw_idx k = 0; k < sim->blocks.nblock; k++) {
+    const pw_block_sums *s = &sim->sums[k];
+    sim->energy.strain_work += sim->measure * s->strain_work;
+    speed = pw_max(speed, s->speed_max);
+    sim->limited += s->limited;
+    sim->rebuilt += s->rebuilt;
+    add_counts(&sim->material, &s->material);
+  }
+  PW_TRY(pw_update_check(sim));
+  const pw_scene *scene = &sim->scene;
+  sim->dt_next = pw_min(scene->time.dt_max_s, scene->time.cfl * sim->mesh.cell / speed);
+  if (scene->time.dt_s > 0.0) {
+    sim->dt_next = scene->time.dt_s;
+  }
+  PW_REQUIRE(sim->dt_next > 0.0 && isfinite(speed), PW_RETRY_NAN,
+             "the stable step is not a positive number (signal speed %g m/s) at step %lld, time "
+             "%.9g s",
+             speed, (long long)sim->step, sim->time);
+  return PW_OK;
+}
+
+pw_status pw_update_sort(pw_sim *sim)
+{
+  pw_points *p = &sim->points;
+  for (pw_idx i = 0; i < p->n; i++) {
+    pw_real x[2] = {p->x[i], p->x[p->ld + i]};
+    p->home[i] = pw_mesh_locate(&sim->mesh, x);
+    if (p->home[i] < 0) {
+      return fail_at(sim, i, PW_ERR_POINT_LOST, "a point is outside the grid");
+    }
+  }
+  if (pw_blocks_sort(&sim->blocks, p->n, p->home, p->body, sim->from)) {
+    pw_points_permute(p, sim->from, sim->scratch);
+  }
+  pw_for_blocks(&sim->blocks, sim->threads, pw_block_weights, sim);
+  sim->sort_needed = false;
+  sim->sorts++;
+  return PW_OK;
+}
