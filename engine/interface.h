@@ -2,7 +2,7 @@
 /**
  * @file engine/interface.h
  * @brief Interface lines: two-node segments with mass on the surface of a body, their motion in
- *        the body's velocity field, contact history of their nodes, search of contact (layer 3).
+ *        the body's velocity field, contact history of their nodes (layer 3).
  *
  * Segment k runs from node k to node k + 1 (closed lines: from the last node to the first); the
  * body lies to its left. The line is part of its body: it scatters mass and momentum to the
@@ -14,7 +14,6 @@
 #include "engine/mesh.h"
 #include "engine/nodes.h"
 #include "engine/sim.h"
-#include "kernels/interface_law.h"
 
 /** Contact of one slave node, kept from step to step. */
 typedef struct pw_touch {
@@ -42,15 +41,19 @@ typedef struct pw_interface_node {
   pw_touch touch;    /**< of a slave */
 } pw_interface_node;
 
+enum { PW_INTERFACE_REALS = 13 /**< reals of a node that a checkpoint keeps */ };
+
 /** A line. All its memory is taken at the start; splits end when it is full. */
 typedef struct pw_interface {
-  int body;       /**< index of its body */
+  int body; /**< index of its body */
   bool closed;
-  bool axi;       /**< axisymmetric: areas and masses carry r */
-  pw_idx n;       /**< nodes now */
+  bool axi; /**< axisymmetric: areas and masses carry r */
+  pw_idx n; /**< nodes now */
   pw_idx capacity;
-  pw_idx row;     /**< nodes of the grid along x */
+  pw_idx row;              /**< nodes of the grid along x */
   pw_interface_node *node; /**< [capacity] */
+  pw_real *packed;         /**< [capacity][PW_INTERFACE_REALS] scratch of the archive */
+  pw_idx *marks;           /**< [capacity][2] likewise */
 } pw_interface;
 
 /** How a dragged line is kept even. */
@@ -133,61 +136,17 @@ void pw_interface_remap(const pw_interface *line, pw_real *rec);
 /** @brief x += dt sum w v, with the velocities in slot @p slot; du is renewed, areas are not. */
 void pw_interface_move(pw_interface *line, const pw_real *rec, int slot, pw_real dt);
 
-/** @brief The same for a body whose velocity @p v [2] is given. */
-void pw_interface_move_rigid(pw_interface *line, const pw_real *v, pw_real dt);
+/** @brief Give every node the velocity @p v [2]. */
+void pw_interface_set_velocity(pw_interface *line, const pw_real *v);
+
+/** @brief x += dt v with the nodes' own velocities: for a body whose motion is prescribed. */
+void pw_interface_move_rigid(pw_interface *line, pw_real dt);
 
 /** @brief Split and merge segments, with mass, momentum and contact history; renews the areas. */
 void pw_interface_refine(pw_interface *line, const pw_refine_rule *rule, pw_refine_counts *counts);
 
 /** @brief Save or load under "<name>/". @return as the archive's calls. */
 pw_status pw_interface_archive(pw_interface *line, const char *name, pw_archive *ar);
-
-/** Segments of a master by grid cell; renewed each step without touching empty cells. */
-typedef struct pw_segment_bins {
-  pw_idx ncell, row, rows; /**< bins are numbered as lower left nodes: row nodes along x */
-  pw_idx capacity, used;
-  pw_idx *head;   /**< [ncell] first entry of a cell, -1: none */
-  pw_idx *touched; /**< [ncell] grid node carries momentum of the master line: stamp of the step */
-  pw_idx *next;   /**< [capacity] */
-  pw_idx *segment; /**< [capacity] */
-  pw_idx *cell;   /**< [capacity] */
-  pw_idx stamp;
-} pw_segment_bins;
-
-/** @brief Room for the segments of @p line on @p mesh. @return PW_OK; PW_ERR_MEMORY. */
-pw_status pw_bins_create(const pw_interface *line, const pw_mesh *mesh, pw_segment_bins *out);
-void pw_bins_destroy(pw_segment_bins *bins);
-
-/** @brief Sort the segments of @p line into the cells they pass; the line must be located. */
-void pw_bins_fill(pw_segment_bins *bins, const pw_interface *line, const pw_mesh *mesh);
-
-/**
- * @brief Steps one to three of the detection (thesis section 2.6.7) for a slave without contact.
- *
- * Shared grid nodes, then the nearest segment closer than a cell, then the sign of the gap: the
- * closest point of the line owns the slave, so that neither convex nor re-entrant vertices leave
- * a gap and exactly one segment answers.
- * @return the segment within whose body the slave lies (then @p pair is set), or -1.
- */
-pw_idx pw_bins_detect(const pw_segment_bins *bins, const pw_interface *master, pw_real reach,
-                      const pw_interface_node *slave, pw_pair *pair);
-
-/**
- * @brief Follow a slave in contact from the segment it belonged to along the line.
- *
- * Goes to a neighbour only while that is closer, so a deep slave keeps the side it came in by.
- * @param[out] pair its place; gap >= 0 when it has left the body
- * @return the owner now.
- */
-pw_idx pw_interface_track(const pw_interface *master, pw_idx owner, const pw_real *x,
-                          pw_pair *pair);
-
-/**
- * @brief Closest place of segment @p s to @p x, with the sign of the gap.
- * @param[out] pair normal and tangent of the place; at a re-entrant vertex the normal points from
- *             the slave to the vertex
- */
-void pw_interface_closest(const pw_interface *line, pw_idx s, const pw_real *x, pw_pair *pair);
 
 /**
  * @brief Present polylines of a penalty contact, for pictures; closed ones repeat their first node.

@@ -14,9 +14,9 @@
 
 /** A value on its way into a struct. */
 typedef struct pw_key_value {
-  int n;                /**< numbers in v; 1 for INT, BOOL, CHOICE, BODY and MATERIAL (an index) */
+  int n; /**< numbers in v; 1 for INT, BOOL, CHOICE, BODY and MATERIAL (an index) */
   pw_real v[PW_LIST];
-  char text[PW_NAME];   /**< for PW_KEY_TEXT */
+  char text[PW_NAME]; /**< for PW_KEY_TEXT */
 } pw_key_value;
 
 /**

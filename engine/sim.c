@@ -270,7 +270,7 @@ static pw_status build(pw_sim *sim)
     sim->body[b].start[0] = com[0];
     sim->body[b].start[1] = com[1];
   }
-  sim->energy.initial = pw_kinetic_energy(sim);
+  sim->energy.initial = sim->energy.kinetic;
   return PW_OK;
 }
 

@@ -76,7 +76,7 @@ const pw_scene *pw_sim_scene(const pw_sim *sim);
 const pw_mesh *pw_sim_mesh(const pw_sim *sim);
 const pw_points *pw_sim_points(const pw_sim *sim);
 
-/** @brief Fill @p out; walks the points for the kinetic energy. */
+/** @brief Fill @p out. */
 void pw_sim_report(const pw_sim *sim, pw_report *out);
 
 /** @brief Columns of history.csv: time, step, energies, each body's centre of mass, effects'. */

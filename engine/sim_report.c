@@ -36,16 +36,6 @@ void pw_body_centre(const pw_sim *sim, int body, pw_real *out)
   out[5] = m;
 }
 
-pw_real pw_kinetic_energy(const pw_sim *sim)
-{
-  const pw_points *p = &sim->points;
-  pw_real sum = 0.0;
-  for (pw_idx i = 0; i < p->n; i++) {
-    sum += p->mass[i] * (p->v[i] * p->v[i] + p->v[p->ld + i] * p->v[p->ld + i]);
-  }
-  return 0.5 * sim->measure * sum;
-}
-
 void pw_sim_report(const pw_sim *sim, pw_report *out)
 {
   *out = (pw_report){.threads = sim->threads,
@@ -68,7 +58,6 @@ void pw_sim_report(const pw_sim *sim, pw_report *out)
                      .vertices_clamped = sim->clamped,
                      .material = sim->material};
   memcpy(out->stage_wall_s, sim->stage_wall, sizeof out->stage_wall_s);
-  out->energy.kinetic = pw_kinetic_energy(sim);
 }
 
 static void put_body(const pw_sim *sim, int b, pw_record *row)
@@ -91,7 +80,7 @@ void pw_sim_history(const pw_sim *sim, pw_record *row)
   pw_record_put(row, "time_s", sim->time);
   pw_record_put(row, "step", (pw_real)sim->step);
   pw_record_put(row, "dt_s", sim->dt);
-  pw_record_put(row, "kinetic_j", pw_kinetic_energy(sim));
+  pw_record_put(row, "kinetic_j", e->kinetic);
   pw_record_put(row, "strain_work_j", e->strain_work);
   pw_record_put(row, "external_work_j", e->external);
   pw_record_put(row, "contact_dissipated_j", e->contact);
@@ -142,7 +131,8 @@ static pw_status archive_numbers(pw_sim *sim, pw_archive *ar)
   pw_real *const real[] = {&sim->time,      &sim->dt,       &sim->dt_next,     &sim->dt_min,
                            &sim->dt_max,    &sim->dt_contact, &sim->load_factor, &e->strain_work,
                            &e->external,    &e->contact,    &e->spring,        &e->damping,
-                           &e->absorbed,    &e->initial};
+                           &e->absorbed,    &e->initial,    &e->kinetic,       &sim->external_last,
+                           &sim->external_gross};
   pw_off *const count[] = {&sim->step,    &sim->sorts,  &sim->limited, &sim->rebuilt, &sim->clamped,
                            &m->substeps,  &m->rhs,      &m->rejected,  &m->forced,    &m->cut_off};
   enum { NREAL = sizeof real / sizeof real[0], NCOUNT = sizeof count / sizeof count[0] };

@@ -30,6 +30,7 @@ typedef struct pw_schedule {
  *  of threads. */
 typedef struct pw_block_sums {
   pw_real strain_work; /**< J per radian or metre, this step */
+  pw_real kinetic;     /**< J per radian or metre, now */
   pw_real speed_max;   /**< max of c + |v|; m/s */
   pw_off limited, rebuilt;
   pw_idx bad;             /**< first point whose stress or domain failed, or -1 */
@@ -76,7 +77,9 @@ struct pw_sim {
   int node_slot;        /**< PW_NODE_VEL or PW_NODE_REMAP: what a constraint hook is to change */
   bool sort_needed;        /**< points are not in the order of their blocks */
 
-  pw_energy energy;
+  pw_energy energy;       /**< kinetic: at the end of the last step */
+  pw_real external_last;  /**< energy.external at the end of the last step; J */
+  pw_real external_gross; /**< sum of the sizes of its changes; J */
   pw_block_sums *sums; /**< [nblock] */
   pw_real stage_wall[PW_TIMER_COUNT];
   pw_real wall;

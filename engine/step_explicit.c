@@ -118,6 +118,9 @@ pw_status pw_step_explicit(pw_sim *sim)
   if (status == PW_OK) {
     status = pw_schedule_run(sim, PW_STAGE_END);
   }
+  if (status == PW_OK) {
+    status = pw_update_energy_guard(sim);
+  }
   lap(sim, PW_TIMER_EFFECTS, &clock);
   return status;
 }

@@ -125,7 +125,7 @@ static void sum_batch(const pw_sim *sim, const batch *s, pw_idx first, pw_idx n,
   const pw_idx ld = p->ld;
   const pw_real *restrict sig = p->stress + first, *restrict vol = p->vol + first;
   const pw_real *restrict v = p->v + first;
-  pw_real work = 0.0, speed = sums->speed_max;
+  pw_real work = 0.0, kinetic = 0.0, speed = sums->speed_max;
   for (pw_idx i = 0; i < n; i++) {
     pw_real w = 0.0;
     for (int c = 0; c < 4; c++) { /* xx yy zz xy: the others do no work in the plane */
@@ -133,10 +133,13 @@ static void sum_batch(const pw_sim *sim, const batch *s, pw_idx first, pw_idx n,
       w += twice * (sig[c * ld + i] + s->old_stress[c * PW_CHUNK + i]) *
            s->dstrain[c * PW_CHUNK + i];
     }
+    pw_real v2 = v[i] * v[i] + v[ld + i] * v[ld + i];
     work += 0.5 * w * vol[i];
-    speed = pw_max(speed, s->wave_speed[i] + sqrt(v[i] * v[i] + v[ld + i] * v[ld + i]));
+    kinetic += 0.5 * p->mass[first + i] * v2;
+    speed = pw_max(speed, s->wave_speed[i] + sqrt(v2));
   }
   sums->strain_work += work;
+  sums->kinetic += kinetic;
   sums->speed_max = speed;
 }
 
@@ -301,8 +304,10 @@ pw_status pw_update_check(pw_sim *sim)
 pw_status pw_update_collect(pw_sim *sim)
 {
   pw_real speed = 0.0;
+  sim->energy.kinetic = 0.0;
   for (pw_idx k = 0; k < sim->blocks.nblock; k++) {
     const pw_block_sums *s = &sim->sums[k];
+    sim->energy.kinetic += sim->measure * s->kinetic;
     sim->energy.strain_work += sim->measure * s->strain_work;
     speed = pw_max(speed, s->speed_max);
     sim->limited += s->limited;
@@ -338,5 +343,21 @@ pw_status pw_update_sort(pw_sim *sim)
   pw_for_blocks(&sim->blocks, sim->threads, pw_block_weights, sim);
   sim->sort_needed = false;
   sim->sorts++;
+  return PW_OK;
+}
+
+pw_status pw_update_energy_guard(pw_sim *sim)
+{
+  pw_energy *e = &sim->energy;
+  pw_real change = e->external - sim->external_last;
+  sim->external_last = e->external;
+  sim->external_gross += change < 0.0 ? -change : change;
+  pw_real supplied = e->initial + sim->external_gross;
+  pw_real surplus = e->kinetic + e->strain_work + e->contact + e->spring + e->damping +
+                    e->absorbed - e->initial - e->external;
+  PW_REQUIRE(surplus <= supplied || supplied <= 0.0, PW_RETRY_DIVERGED,
+             "unstable: %.4g J of energy appeared from nothing, %.4g J were supplied (kinetic "
+             "%.4g J) at step %lld, time %.9g s; a smaller time.cfl may help",
+             surplus, supplied, e->kinetic, (long long)sim->step, sim->time);
   return PW_OK;
 }

@@ -49,6 +49,13 @@ pw_status pw_update_collect(pw_sim *sim);
  *  @return PW_OK, or the status of the first failing point with its description. */
 pw_status pw_update_check(pw_sim *sim);
 
+/**
+ * @brief Stop a run whose energy balance shows more energy than was ever supplied: the mark of a
+ *        step beyond the stability limit. Call at the end of a step.
+ * @return PW_OK; PW_RETRY_DIVERGED.
+ */
+pw_status pw_update_energy_guard(pw_sim *sim);
+
 /** @brief Sort points into their blocks and locate their vertices anew.
  *  @return PW_OK; PW_ERR_POINT_LOST. */
 pw_status pw_update_sort(pw_sim *sim);

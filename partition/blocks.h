@@ -16,11 +16,11 @@
 
 typedef struct pw_blocks {
   pw_idx nblock, nelem;
-  pw_idx cells[2];     /**< cells of the grid along x and y */
-  pw_idx reach;        /**< cells of halo in the support */
-  pw_idx *elem_block;  /**< [nelem] block of an element */
-  pw_idx *elem_start;  /**< [nblock + 1] offsets into elem */
-  pw_idx *elem;        /**< [nelem] elements by block, ascending in each */
+  pw_idx cells[2];    /**< cells of the grid along x and y */
+  pw_idx reach;       /**< cells of halo in the support */
+  pw_idx *elem_block; /**< [nelem] block of an element */
+  pw_idx *elem_start; /**< [nblock + 1] offsets into elem */
+  pw_idx *elem;       /**< [nelem] elements by block, ascending in each */
   pw_idx ncolour;
   pw_idx *colour;       /**< [nblock] */
   pw_idx *colour_start; /**< [ncolour + 1] offsets into colour_block */
@@ -43,8 +43,13 @@ pw_status pw_blocks_create(const pw_idx *cells, const pw_idx *weight, pw_idx per
 /** @brief Free; a zeroed struct is accepted. */
 void pw_blocks_destroy(pw_blocks *b);
 
-/** @brief Elements per block that give enough blocks for @p threads: see architecture of the
- *  colouring in blocks.c. @return between 8 and 256. */
+/**
+ * @brief Elements per block that give enough blocks to keep a few threads busy: see blocks.c.
+ *
+ * Chosen from @p nelem alone, for a nominal machine of 4 threads; @p threads is not used, so that
+ * blocks, order of additions and results are bitwise the same on any number of threads.
+ * @return between 8 and 256.
+ */
 pw_idx pw_blocks_choose_size(pw_idx nelem, int threads);
 
 /**
@@ -52,13 +57,16 @@ pw_idx pw_blocks_choose_size(pw_idx nelem, int threads);
  * @param[in]  elem [n] element of each point, each in [0, nelem)
  * @param[in]  body [n] in [0, nbody)
  * @param[out] from [n] new point i is old point from[i]; point_start is renewed
+ *
+ * Allocates nothing; serial, in a time proportional to n + nblock * nbody.
  * @return true when from is not the identity.
  */
 bool pw_blocks_sort(pw_blocks *b, pw_idx n, const pw_idx *elem, const pw_idx *body, pw_idx *from);
 
 /**
  * @brief Verify the colouring against a brute-force walk over supports.
- * @return PW_OK; PW_ERR_ARGUMENT naming two blocks of one colour that share a node.
+ * @return PW_OK; PW_ERR_ARGUMENT naming two blocks of one colour that share a node, or a block
+ *         listed under another colour than its own; PW_ERR_MEMORY.
  */
 pw_status pw_blocks_check(const pw_blocks *b);
 
