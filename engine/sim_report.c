@@ -84,6 +84,7 @@ void pw_sim_history(const pw_sim *sim, pw_record *row)
   pw_record_put(row, "strain_work_j", e->strain_work);
   pw_record_put(row, "external_work_j", e->external);
   pw_record_put(row, "contact_dissipated_j", e->contact);
+  pw_record_put(row, "contact_spring_j", e->spring);
   pw_record_put(row, "damping_dissipated_j", e->damping);
   for (int b = 0; b < sim->nbody; b++) {
     put_body(sim, b, row);

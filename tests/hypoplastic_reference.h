@@ -10,11 +10,10 @@
 #define PW_TESTS_HYPOPLASTIC_REFERENCE_H
 
 #include "kernels/hypoplastic.h"
+#include "tests/harness.h"
 
 #include <dirent.h>
-#include <stdio.h>
 #include <stdlib.h>
-#include <string.h>
 
 #define REFERENCE_FOLDER "reference/hypoplastic"
 

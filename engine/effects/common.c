@@ -1,0 +1,60 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "engine/effects/common.h"
+
+enum { CHUNK = 512 };
+
+pw_off pw_sum_scratch(pw_off n)
+{
+  return (n + CHUNK - 1) / CHUNK * PW_SUMS;
+}
+
+void pw_sum_items(pw_sum_fn fn, const void *ctx, pw_off n, int threads, pw_real *part, pw_real *out)
+{
+  const pw_off chunks = (n + CHUNK - 1) / CHUNK;
+#pragma omp parallel for default(none) shared(fn, ctx, n, part, chunks) num_threads(threads)       \
+    schedule(static)
+  for (pw_off k = 0; k < chunks; k++) {
+    pw_real sum[PW_SUMS] = {0.0};
+    fn(ctx, k * CHUNK, (k + 1) * CHUNK < n ? (k + 1) * CHUNK : n, sum);
+    for (int s = 0; s < PW_SUMS; s++) {
+      part[k * PW_SUMS + s] = sum[s];
+    }
+  }
+  for (int s = 0; s < PW_SUMS; s++) {
+    out[s] = 0.0;
+    for (pw_off k = 0; k < chunks; k++) {
+      out[s] += part[k * PW_SUMS + s];
+    }
+  }
+}
+
+int pw_effect_instance(const pw_sim *sim, const void *param)
+{
+  const pw_scene *scene = &sim->scene;
+  for (int e = 0; e < scene->neffect; e++) {
+    if ((const void *)scene->effect[e].param != param) {
+      continue;
+    }
+    int rank = 0;
+    for (int k = 0; k < e; k++) {
+      rank += scene->effect[k].type == scene->effect[e].type;
+    }
+    return rank;
+  }
+  return 0;
+}
+
+void pw_effect_fields(const pw_sim *sim, int b, int *first, int *last)
+{
+  *first = b < 0 ? 0 : sim->body[b].field;
+  *last = b < 0 ? sim->nodes.nfield : *first + 1;
+}
+
+int pw_scene_contacts(const pw_scene *scene)
+{
+  int count = 0;
+  for (int e = 0; e < scene->neffect; e++) {
+    count += scene->effect[e].type && scene->effect[e].type->own_velocity_fields;
+  }
+  return count;
+}

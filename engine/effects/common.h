@@ -1,0 +1,51 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/**
+ * @file engine/effects/common.h
+ * @brief Small things several effects need (layer 3).
+ */
+#ifndef PW_EFFECTS_COMMON_H
+#define PW_EFFECTS_COMMON_H
+
+#include "engine/sim_state.h"
+
+/** Sums one reduction carries. */
+enum { PW_SUMS = 3 };
+
+/** Adds what the items [first, last) contribute to sum[PW_SUMS]; called from several threads. */
+typedef void (*pw_sum_fn)(const void *ctx, pw_off first, pw_off last, pw_real *sum);
+
+/** @brief Reals that a reduction over @p n items needs as scratch. */
+pw_off pw_sum_scratch(pw_off n);
+
+/**
+ * @brief Sum over items 0 .. n - 1 in chunks of fixed size, so that the result is bitwise the same
+ *        on any number of threads.
+ * @param[out] part  scratch, [pw_sum_scratch(n)]
+ * @param[out] out   [PW_SUMS]
+ */
+void pw_sum_items(pw_sum_fn fn, const void *ctx, pw_off n, int threads, pw_real *part,
+                  pw_real *out);
+
+/** @brief Which instance of its effect, from 0, has the parameters @p param of @p sim's scene. */
+int pw_effect_instance(const pw_sim *sim, const void *param);
+
+/** @brief First and one past the last velocity field of body @p b; all fields when b < 0. */
+void pw_effect_fields(const pw_sim *sim, int b, int *first, int *last);
+
+/**
+ * @brief Velocity through which the forces on a node work in this step, component @p a, at
+ *        PW_STAGE_END.
+ *
+ * The kinetic energy of the points changes by dt sum f_i . (v_i(n) + v_i) / 2, v_i the remapped
+ * velocity (MUSL) or v_i(n+1). With the new velocity alone the balance of energies would drift in
+ * proportion to the step. Slots then: VEL v(n+1), FORCE its increment, node_slot v_i.
+ */
+static inline pw_real pw_node_mean_velocity(const pw_sim *sim, const pw_real *rec, int a)
+{
+  return 0.5 * (rec[PW_NODE_VEL + a] - rec[PW_NODE_FORCE + a] + rec[sim->node_slot + a]);
+}
+
+/** @brief Number of entries of the scene that want one velocity field per body. */
+int pw_scene_contacts(const pw_scene *scene);
+
+#endif /* PW_EFFECTS_COMMON_H */

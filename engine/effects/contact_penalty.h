@@ -1,0 +1,57 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/**
+ * @file engine/effects/contact_penalty.h
+ * @brief Inside of the penalty contact: from slaves in contact to forces on the grid (layer 3).
+ */
+#ifndef PW_EFFECTS_CONTACT_PENALTY_H
+#define PW_EFFECTS_CONTACT_PENALTY_H
+
+#include "engine/effects/contact.h"
+#include "engine/interface_search.h"
+
+/** A slave in contact in this step. */
+typedef struct pw_active_pair {
+  pw_idx slave, segment;
+  pw_pair place;
+  pw_real overlap_before; /**< effective overlap of the last step; m */
+  pw_real slip_step;      /**< slip of the last step, C_t . du; m */
+  pw_real area;           /**< tributary area times the reduction of stiffness; m2 */
+} pw_active_pair;
+
+/** Laws and counters of a penalty contact. */
+typedef struct pw_penalty {
+  pw_contact_tally tally; /**< first: engine/effects/contact.h */
+  const pw_contact_penalty_param *param;
+  pw_real omega_n, omega_t;
+  pw_interface master, slave;
+  pw_segment_bins bins;
+  pw_refine_rule rule;
+  pw_refine_counts counts;
+  pw_off reduced;  /**< pairs whose stiffness was reduced for a step */
+  pw_off detached; /**< pairs without force: a side had no active grid node */
+  pw_idx npair;
+  pw_active_pair *pair; /**< [slave.capacity] */
+  pw_real *stiffness; /**< [2][nnode] sum of stiffnesses at a grid node: slave's, master's field */
+  /* Of the present step: */
+  pw_real *rec[2];    /**< records of the fields of slave and master */
+  bool given[2];      /**< slave's, master's motion is prescribed: no mass, takes no force */
+  pw_real spring;     /**< energy in the springs; J per radian or metre */
+  pw_real dissipated; /**< likewise */
+} pw_penalty;
+
+/** @brief Find the slaves in contact and update their history; fills c->pair. */
+void pw_penalty_search(pw_penalty *c, pw_real reach);
+
+/**
+ * @brief Limit the stiffness of pairs for the present step.
+ *
+ * The row sums of the pairs' stiffness over the masses of their grid nodes bound the square of
+ * their highest frequency; for one pair alone it is k / m_eff, 1 / m_eff = sum N^2 / m.
+ * @return the largest step that resolves every pair, 0.2 / frequency; 0 without pairs; s.
+ */
+pw_real pw_penalty_limit(pw_penalty *c, pw_idx nnode, pw_real dt);
+
+/** @brief Springs, friction, forces on the grid (eq. 2.48, 2.52), tally. */
+void pw_penalty_forces(pw_penalty *c);
+
+#endif /* PW_EFFECTS_CONTACT_PENALTY_H */

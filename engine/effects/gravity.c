@@ -1,0 +1,120 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Weight of all points, with a linear ramp; the direction may turn once (inclined planes). */
+#include "engine/effects/common.h"
+#include "engine/effects/load_curve.h"
+#include "engine/effects/params.h"
+
+#include <math.h>
+
+#include "engine/core/mem.h"
+
+#define AT(member) offsetof(pw_gravity_param, member)
+
+/* clang-format off */
+static const pw_key keys[] = {
+  {"acceleration_m_s2", PW_KEY_REAL, AT(acceleration_m_s2), 0, 1e6, "9.81", NULL, NULL,
+   "of gravity, along -y unless tilted"},
+  {"ramp_s", PW_KEY_REAL, AT(ramp_s), 0, 1e12, "0", NULL, NULL,
+   "time over which it grows linearly from zero; 0: at once"},
+  {"tilt_deg", PW_KEY_REAL, AT(tilt_deg), -180, 180, "0", NULL, NULL,
+   "angle by which it turns from -y towards +x"},
+  {"tilt_at_s", PW_KEY_REAL, AT(tilt_at_s), 0, 1e12, "0", NULL, NULL, "time at which it turns"},
+  {0}};
+/* clang-format on */
+
+typedef struct gravity {
+  const pw_gravity_param *param;
+  pw_real tilted[2]; /* direction after the turn */
+  pw_real g[2];      /* of the step being made; m/s2 */
+  pw_real *part;     /* scratch of sums */
+} gravity;
+
+/* Mean over the step of the acceleration, so that ramp and turn do not depend on the steps. */
+static void set_acceleration(pw_sim *sim, gravity *c)
+{
+  const pw_gravity_param *p = c->param;
+  pw_real ramp = pw_ramp_mean(sim->time, sim->dt, 0.0, p->ramp_s);
+  pw_real turned = pw_ramp_mean(sim->time, sim->dt, p->tilt_at_s, 0.0);
+  pw_real a = p->acceleration_m_s2 * ramp;
+  c->g[0] = a * turned * c->tilted[0];
+  c->g[1] = a * (turned * c->tilted[1] - (1.0 - turned));
+  sim->load_factor = ramp;
+}
+
+static pw_status add_weight(pw_sim *sim, void *ctx)
+{
+  gravity *c = ctx;
+  set_acceleration(sim, c);
+  const pw_off count = (pw_off)sim->nodes.nnode * sim->nodes.nfield;
+  const pw_real gx = c->g[0], gy = c->g[1];
+  pw_real *rec = sim->nodes.rec;
+#pragma omp parallel for default(none) shared(rec, count, gx, gy) num_threads(sim->threads)        \
+    schedule(static)
+  for (pw_off k = 0; k < count; k++) {
+    pw_real *r = rec + k * PW_NODE;
+    r[PW_NODE_FORCE] += r[PW_NODE_MASS] * gx;
+    r[PW_NODE_FORCE + 1] += r[PW_NODE_MASS] * gy;
+  }
+  return PW_OK;
+}
+
+/* Momentum with the mean velocities of the step. */
+static void momentum(const void *ctx, pw_off first, pw_off last, pw_real *sum)
+{
+  const pw_sim *sim = ctx;
+  for (pw_off k = first; k < last; k++) {
+    const pw_real *r = sim->nodes.rec + k * PW_NODE;
+    sum[0] += r[PW_NODE_MASS] * pw_node_mean_velocity(sim, r, 0);
+    sum[1] += r[PW_NODE_MASS] * pw_node_mean_velocity(sim, r, 1);
+  }
+}
+
+/* Work of the nodal weights: in axisymmetry this is the weight's work over the whole domain of a
+ * point, which its centre alone does not give. */
+static pw_status add_work(pw_sim *sim, void *ctx)
+{
+  const gravity *c = ctx;
+  pw_real sum[PW_SUMS];
+  pw_sum_items(momentum, sim, (pw_off)sim->nodes.nnode * sim->nodes.nfield, sim->threads, c->part,
+               sum);
+  sim->energy.external += sim->measure * sim->dt * (c->g[0] * sum[0] + c->g[1] * sum[1]);
+  return PW_OK;
+}
+
+static void destroy(void **ctx)
+{
+  gravity *c = *ctx;
+  if (c) {
+    pw_mem_free(&c->part);
+  }
+  pw_mem_free(ctx);
+}
+
+static pw_status create(pw_sim *sim, const void *param, void **ctx)
+{
+  gravity *c;
+  PW_TRY(pw_mem_alloc("gravity", 1, sizeof *c, &c));
+  *ctx = c;
+  c->param = param;
+  pw_real tilt = c->param->tilt_deg * (3.14159265358979323846 / 180.0);
+  c->tilted[0] = sin(tilt);
+  c->tilted[1] = -cos(tilt);
+  sim->load_factor = c->param->ramp_s > 0.0 ? 0.0 : 1.0;
+  return pw_mem_alloc("gravity sums", pw_sum_scratch((pw_off)sim->nodes.nnode * sim->nodes.nfield),
+                      sizeof(pw_real), &c->part);
+}
+
+static const pw_hook hooks[] = {
+    {PW_STAGE_NODE_FORCE, add_weight},
+    {PW_STAGE_END, add_work},
+    {0, NULL},
+};
+
+const pw_effect pw_effect_gravity = {
+    .name = "gravity",
+    .brief = "weight of all points, with a ramp; may turn by an angle",
+    .keys = keys,
+    .hooks = hooks,
+    .create = create,
+    .destroy = destroy,
+};

@@ -1,0 +1,275 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "engine/scene_check.h"
+
+#include "engine/effect.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+enum { PATH_SIZE = PW_NAME + 16 };
+
+/* Largest numbers of nodes and of points in a body: indices and sizes in bytes stay small. */
+static const pw_real largest_count = 2.0e8;
+
+/* Most cells along one axis (engine/mesh.c). */
+static const pw_real largest_side = 1 << 15;
+
+/* Lengths that differ by less than this part of a cell are the same. */
+static const pw_real same = 1e-9;
+
+static pw_status check_side(const pw_scene *s, int axis)
+{
+  pw_real cells = s->grid.size_m[axis] / s->grid.cell_m;
+  PW_REQUIRE(cells >= 1 - 1e-6 && fabs(cells - nearbyint(cells)) < 1e-6, PW_ERR_SCENE,
+             "size_m: the %s %g m is not a whole number of cells of %g m",
+             axis == 0 ? "width" : "height", s->grid.size_m[axis], s->grid.cell_m);
+  return PW_OK;
+}
+
+pw_status pw_scene_check_grid(const pw_scene *s)
+{
+  pw_real nodes =
+      (s->grid.size_m[0] / s->grid.cell_m + 1) * (s->grid.size_m[1] / s->grid.cell_m + 1);
+  PW_TRY(check_side(s, 0));
+  PW_TRY(check_side(s, 1));
+  PW_REQUIRE(pw_max(s->grid.size_m[0], s->grid.size_m[1]) <= (largest_side + 0.5) * s->grid.cell_m,
+             PW_ERR_SCENE, "cell_m = %g m: more than %g cells along one side", s->grid.cell_m,
+             largest_side);
+  PW_REQUIRE(s->method.basis != PW_UGIMP ||
+                 pw_min(s->grid.size_m[0], s->grid.size_m[1]) > 1.5 * s->grid.cell_m,
+             PW_ERR_SCENE, "size_m: ugimp needs at least two cells in each direction");
+  PW_REQUIRE(nodes <= largest_count, PW_ERR_SCENE,
+             "cell_m = %g m gives %.3g nodes, at most %.3g can be handled", s->grid.cell_m, nodes,
+             largest_count);
+  PW_REQUIRE(s->geometry != PW_AXI || s->grid.origin_m[0] >= 0, PW_ERR_SCENE,
+             "origin_m: in axisymmetry x is the radius and the grid must start at x >= 0, not %g m",
+             s->grid.origin_m[0]);
+  return PW_OK;
+}
+
+pw_status pw_scene_check_time(const pw_scene *s)
+{
+  PW_REQUIRE(s->time.dt_s <= s->time.dt_max_s, PW_ERR_SCENE,
+             "dt_s = %g s is larger than dt_max_s = %g s", s->time.dt_s, s->time.dt_max_s);
+  return PW_OK;
+}
+
+pw_status pw_scene_check_output(const pw_scene *s)
+{
+  PW_REQUIRE(s->output.picture_x_m[0] <= s->output.picture_x_m[1], PW_ERR_SCENE,
+             "picture_x_m must be written [left, right]");
+  PW_REQUIRE(s->output.picture_y_m[0] <= s->output.picture_y_m[1], PW_ERR_SCENE,
+             "picture_y_m must be written [bottom, top]");
+  return PW_OK;
+}
+
+pw_status pw_scene_check_material(const pw_scene *s, int i)
+{
+  const pw_scene_material *m = &s->material[i];
+  for (int k = 0; k < i; k++) {
+    PW_REQUIRE(strcmp(s->material[k].name, m->name) != 0, PW_ERR_SCENE,
+               "two materials have the name '%s'", m->name);
+  }
+  PW_REQUIRE(m->model, PW_ERR_SCENE, "material '%s' has no model", m->name);
+  return m->model->check ? m->model->check(m->param) : PW_OK;
+}
+
+/* Smallest box around a body: {left, right, bottom, top}; in axisymmetry half of a pile. */
+static void body_box(const pw_scene *s, const pw_scene_body *b, pw_real box[4])
+{
+  switch ((pw_shape)b->shape) {
+  case PW_SHAPE_RECTANGLE:
+    memcpy(box, b->x_m, sizeof b->x_m);
+    memcpy(box + 2, b->y_m, sizeof b->y_m);
+    break;
+  case PW_SHAPE_DISC:
+    box[0] = b->centre_m[0] - b->radius_m;
+    box[1] = b->centre_m[0] + b->radius_m;
+    box[2] = b->centre_m[1] - b->radius_m;
+    box[3] = b->centre_m[1] + b->radius_m;
+    break;
+  case PW_SHAPE_PILE:
+    box[0] = s->geometry == PW_AXI ? b->centre_m[0] : b->centre_m[0] - b->radius_m;
+    box[1] = b->centre_m[0] + b->radius_m;
+    box[2] = b->tip_y_m;
+    box[3] = b->tip_y_m + b->length_m;
+    break;
+  }
+}
+
+static pw_status check_shape(const pw_scene_body *b)
+{
+  if (b->shape == PW_SHAPE_RECTANGLE) {
+    PW_REQUIRE(b->x_m[0] < b->x_m[1], PW_ERR_SCENE, "x_m must be written [left, right]");
+    PW_REQUIRE(b->y_m[0] < b->y_m[1], PW_ERR_SCENE, "y_m must be written [bottom, top]");
+  }
+  if (b->shape == PW_SHAPE_PILE && b->tip != PW_TIP_FLAT) {
+    pw_real tip = b->tip_length_m > 0 ? b->tip_length_m : b->radius_m;
+    PW_REQUIRE(tip <= b->length_m, PW_ERR_SCENE,
+               "length_m = %g m is shorter than the pile's tip of %g m", b->length_m, tip);
+  }
+  return PW_OK;
+}
+
+static pw_status check_inside(const pw_scene *s, const pw_scene_body *b, const pw_real box[4])
+{
+  static const char *const side[] = {"left", "right", "bottom", "top"};
+  pw_real slack = same * s->grid.cell_m;
+  PW_REQUIRE(s->geometry != PW_AXI || box[0] >= -slack, PW_ERR_SCENE,
+             "body '%s' crosses the axis x = 0 of the axisymmetric scene", b->name);
+  for (int k = 0; k < 4; k++) {
+    pw_real lower = s->grid.origin_m[k / 2], upper = lower + s->grid.size_m[k / 2];
+    PW_REQUIRE(box[k] >= lower - slack && box[k] <= upper + slack, PW_ERR_SCENE,
+               "body '%s' leaves the grid: its %s is at %g m, the grid reaches from %g m to %g m",
+               b->name, side[k], box[k], lower, upper);
+  }
+  return PW_OK;
+}
+
+static pw_status check_sizes(const pw_scene *s, const pw_scene_body *b, const pw_real box[4])
+{
+  pw_real smallest = b->point_size_m;
+  PW_REQUIRE(b->nrefine == 0 || b->shape == PW_SHAPE_RECTANGLE, PW_ERR_SCENE,
+             "refine: only a rectangle can be refined in boxes");
+  PW_REQUIRE(b->point_size_m <= 4 * s->grid.cell_m, PW_ERR_SCENE,
+             "point_size_m = %g m is larger than 4 cells (%g m)", b->point_size_m,
+             4 * s->grid.cell_m);
+  for (int r = 0; r < b->nrefine; r++) {
+    const pw_scene_refine *box_r = &b->refine[r];
+    PW_REQUIRE(box_r->x_m[0] < box_r->x_m[1] && box_r->y_m[0] < box_r->y_m[1], PW_ERR_SCENE,
+               "refine: x_m and y_m of entry %d must be written [smaller, larger]", r);
+    PW_REQUIRE(box_r->point_size_m <= b->point_size_m, PW_ERR_SCENE,
+               "refine: point_size_m = %g m of entry %d is larger than the body's %g m",
+               box_r->point_size_m, r, b->point_size_m);
+    smallest = pw_min(smallest, box_r->point_size_m);
+  }
+  pw_real points = (box[1] - box[0]) / smallest * ((box[3] - box[2]) / smallest);
+  PW_REQUIRE(points <= largest_count, PW_ERR_SCENE,
+             "point_size_m: domains of %g m may give %.3g points, at most %.3g can be handled",
+             smallest, points, largest_count);
+  return PW_OK;
+}
+
+pw_status pw_scene_check_body(const pw_scene *s, int i)
+{
+  const pw_scene_body *b = &s->body[i];
+  for (int k = 0; k < i; k++) {
+    PW_REQUIRE(strcmp(s->body[k].name, b->name) != 0, PW_ERR_SCENE, "two bodies have the name '%s'",
+               b->name);
+  }
+  PW_REQUIRE(b->material >= 0 && b->material < s->nmaterial, PW_ERR_SCENE,
+             "material: body '%s' has no material", b->name);
+  PW_REQUIRE(b->nrefine >= 0 && b->nrefine <= PW_MAX_REFINE, PW_ERR_SCENE,
+             "refine: at most %d entries", (int)PW_MAX_REFINE);
+  pw_real box[4] = {0};
+  body_box(s, b, box);
+  PW_TRY(check_shape(b));
+  PW_TRY(check_inside(s, b, box));
+  return check_sizes(s, b, box);
+}
+
+/* Value of a key that names a body, in the parameters of effect @p e. */
+static int body_of(const pw_scene_effect *e, const pw_key *key)
+{
+  int b;
+  memcpy(&b, e->param + key->offset, sizeof b);
+  return b;
+}
+
+static pw_status check_initial_stress(const pw_scene *s, int body)
+{
+  for (int b = 0; b < s->nbody; b++) {
+    const pw_material *model = s->material[s->body[b].material].model;
+    PW_REQUIRE((body >= 0 && body != b) || model->takes_initial_stress, PW_ERR_SCENE,
+               "body: '%s' is of %s, which cannot start from a prescribed stress", s->body[b].name,
+               model->name);
+  }
+  return PW_OK;
+}
+
+static pw_status check_bodies_of(const pw_scene *s, const pw_scene_effect *e)
+{
+  for (const pw_key *k = e->type->keys; k && k->name; k++) {
+    if (k->type != PW_KEY_BODY) {
+      continue;
+    }
+    int body = body_of(e, k);
+    PW_REQUIRE(body < s->nbody && (body >= 0 || k->fallback || k->needs), PW_ERR_SCENE,
+               "%s: no such body", k->name);
+    if (strcmp(e->type->name, "initial_stress") == 0 && strcmp(k->name, "body") == 0) {
+      PW_TRY(check_initial_stress(s, body));
+    }
+  }
+  return PW_OK;
+}
+
+pw_status pw_scene_check_effect(const pw_scene *s, int i)
+{
+  const pw_scene_effect *e = &s->effect[i];
+  for (int k = 0; k < i; k++) {
+    const pw_effect *other = s->effect[k].type;
+    PW_REQUIRE(other != e->type || e->type->many, PW_ERR_SCENE, "%s is given twice", e->type->name);
+    PW_REQUIRE(other == e->type || !other->own_velocity_fields || !e->type->own_velocity_fields,
+               PW_ERR_SCENE, "%s and %s exclude each other: a scene has one kind of contact",
+               e->type->name, other->name);
+  }
+  PW_TRY(check_bodies_of(s, e));
+  return e->type->check ? e->type->check(s, e->param) : PW_OK;
+}
+
+void pw_scene_effect_path(const pw_scene *s, int i, char *out)
+{
+  const pw_effect *type = s->effect[i].type;
+  int entry = 0;
+  for (int k = 0; k < i; k++) {
+    entry += s->effect[k].type == type;
+  }
+  if (type->many) {
+    snprintf(out, PATH_SIZE, "%s.%d", type->name, entry);
+  } else {
+    snprintf(out, PATH_SIZE, "%s", type->name);
+  }
+}
+
+/* Puts the section's name in front of the message of a broken rule. */
+static pw_status in_section(pw_status status, const char *group, const char *name)
+{
+  if (status != PW_OK) {
+    char rule[512];
+    snprintf(rule, sizeof rule, "%s", pw_error_text());
+    pw_error_set(status, __FILE__, __LINE__, __func__, "%s%s: %s", group, name, rule);
+  }
+  return status;
+}
+
+static pw_status check_lists(const pw_scene *s)
+{
+  PW_REQUIRE(s->nmaterial >= 0 && s->nmaterial <= PW_MAX_MATERIALS, PW_ERR_SCENE,
+             "materials: %d, at most %d", s->nmaterial, (int)PW_MAX_MATERIALS);
+  PW_REQUIRE(s->nbody >= 1 && s->nbody <= PW_MAX_BODIES, PW_ERR_SCENE,
+             "bodies: %d, from 1 to %d are needed", s->nbody, (int)PW_MAX_BODIES);
+  PW_REQUIRE(s->neffect >= 0 && s->neffect <= PW_MAX_EFFECTS, PW_ERR_SCENE,
+             "effects: %d entries, at most %d", s->neffect, (int)PW_MAX_EFFECTS);
+  return PW_OK;
+}
+
+pw_status pw_scene_check(const pw_scene *s)
+{
+  PW_TRY(check_lists(s));
+  PW_TRY(in_section(pw_scene_check_grid(s), "grid", ""));
+  PW_TRY(in_section(pw_scene_check_time(s), "time", ""));
+  PW_TRY(in_section(pw_scene_check_output(s), "output", ""));
+  for (int i = 0; i < s->nmaterial; i++) {
+    PW_TRY(in_section(pw_scene_check_material(s, i), "materials.", s->material[i].name));
+  }
+  for (int i = 0; i < s->nbody; i++) {
+    PW_TRY(in_section(pw_scene_check_body(s, i), "bodies.", s->body[i].name));
+  }
+  for (int i = 0; i < s->neffect; i++) {
+    char path[PATH_SIZE];
+    pw_scene_effect_path(s, i, path);
+    PW_TRY(in_section(pw_scene_check_effect(s, i), "", path));
+  }
+  return PW_OK;
+}

@@ -1,0 +1,22 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/**
+ * @file io/check_report.h
+ * @brief What `pilewright check` says of a scene before it is run (layer 4).
+ */
+#ifndef PW_IO_CHECK_REPORT_H
+#define PW_IO_CHECK_REPORT_H
+
+#include <stdio.h>
+
+#include "engine/sim.h"
+
+/**
+ * @brief Print effects with their hooks, fields and bytes per point, sizes, blocks, the first
+ *        stable step, and estimates of steps, memory and time.
+ *
+ * The time is estimated by making a few steps (at most about a second) with @p sim, which is not
+ * to be used for anything else afterwards. Steps that fail leave the time out.
+ */
+void pw_check_report(pw_sim *sim, FILE *out);
+
+#endif /* PW_IO_CHECK_REPORT_H */

@@ -1,0 +1,372 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "io/pictures.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "engine/core/mem.h"
+#include "io/pictures_plot.h"
+#include "io/point_values.h"
+
+enum {
+  CANVAS = 1200,   /* longest side of a picture; pixels */
+  NARROWEST = 800, /* room for the title */
+  LEFT = 125,
+  RIGHT = 190,
+  TOP = 104,
+  BOTTOM = 90, /* margins; pixels */
+  BAR = 34,
+  BAR_GAP = 24, /* colour bar: thickness, distance from the axes */
+  LOW = 240,    /* a plot less high has its colour bar below */
+  BELOW = 110,  /* room for it */
+  OUTLINE_POINTS = 16384,
+  OUTLINES = 16
+};
+
+typedef struct picture picture;
+
+/* One quantity to draw. */
+typedef struct quantity {
+  const char *file;  /* start of the file's name */
+  const char *title; /* with a capital */
+  const char *unit;  /* NULL: a stress, whose unit follows from its size */
+  pw_real (*value)(const picture *c, pw_idx i);
+} quantity;
+
+struct picture {
+  const pw_sim *sim;
+  const pw_scene *scene;
+  const pw_points *p;
+  const quantity *what;
+  bool soil_only; /* other bodies are grey */
+  pw_state_column void_ratio;
+  pw_real x[2], y[2];        /* window; m */
+  int width, height, px, py; /* canvas and plot area; pixels */
+  pw_real lo, hi, scale;     /* colour range in the unit drawn */
+  const char *unit;
+  pw_real *work; /* [n] values, then outlines */
+};
+
+/* ---- quantities ---- */
+
+static pw_real stress_yy(const picture *c, pw_idx i)
+{
+  return c->p->stress[c->p->ld + i];
+}
+
+static pw_real stress_xx(const picture *c, pw_idx i)
+{
+  return c->p->stress[i];
+}
+
+static pw_real mean_stress(const picture *c, pw_idx i)
+{
+  const pw_points *p = c->p;
+  return (p->stress[i] + p->stress[p->ld + i] + p->stress[2 * (pw_off)p->ld + i]) / 3.0;
+}
+
+static pw_real speed(const picture *c, pw_idx i)
+{
+  return hypot(c->p->v[i], c->p->v[c->p->ld + i]);
+}
+
+static pw_real void_ratio(const picture *c, pw_idx i)
+{
+  return pw_point_state(c->p, &c->void_ratio, i);
+}
+
+static pw_real friction_angle(const picture *c, pw_idx i)
+{
+  return pw_point_angle_deg(c->scene, c->p, i);
+}
+
+static bool has_void_ratio(picture *c)
+{
+  pw_state_column column[PW_MAX_STATE_COLUMNS];
+  int n = pw_state_columns(c->scene, column);
+  for (int k = 0; k < n; k++) {
+    if (strcmp(column[k].name, "void_ratio") == 0) {
+      c->void_ratio = column[k];
+      return true;
+    }
+  }
+  return false;
+}
+
+static bool has_soil(const pw_scene *scene)
+{
+  bool found = false;
+  for (int b = 0; b < scene->nbody; b++) {
+    found = found || pw_body_has_angle(scene, b);
+  }
+  return found;
+}
+
+/* ---- window, sizes ---- */
+
+static bool coloured(const picture *c, pw_idx i)
+{
+  return !c->soil_only || pw_body_has_angle(c->scene, c->p->body[i]);
+}
+
+/* Domain of a point; without one a square of its volume. */
+static void corners(const picture *c, pw_idx i, pw_real *xy)
+{
+  static const pw_real s[8] = {-1.0, -1.0, 1.0, -1.0, 1.0, 1.0, -1.0, 1.0};
+  const pw_points *p = c->p;
+  if (pw_points_have_domains(p)) {
+    pw_point_corners(p, i, xy);
+    return;
+  }
+  pw_real area = c->scene->geometry == PW_AXI ? p->vol[i] / p->x[i] : p->vol[i];
+  for (int k = 0; k < 8; k++) {
+    xy[k] = p->x[(pw_off)(k % 2) * p->ld + i] + 0.5 * s[k] * sqrt(area);
+  }
+}
+
+static bool in_window(const picture *c, const pw_real *xy)
+{
+  pw_real lo[2] = {xy[0], xy[1]}, hi[2] = {xy[0], xy[1]};
+  for (int k = 2; k < 8; k++) {
+    lo[k % 2] = pw_min(lo[k % 2], xy[k]);
+    hi[k % 2] = pw_max(hi[k % 2], xy[k]);
+  }
+  return hi[0] >= c->x[0] && lo[0] <= c->x[1] && hi[1] >= c->y[0] && lo[1] <= c->y[1];
+}
+
+static void choose_window(picture *c)
+{
+  const pw_mesh *m = pw_sim_mesh(c->sim);
+  const pw_real *x = c->scene->output.picture_x_m, *y = c->scene->output.picture_y_m;
+  const bool own_x = x[1] > x[0], own_y = y[1] > y[0];
+  for (int k = 0; k < 2; k++) {
+    c->x[k] = own_x ? x[k] : m->origin[0] + k * m->cell * m->cells[0];
+    c->y[k] = own_y ? y[k] : m->origin[1] + k * m->cell * m->cells[1];
+  }
+}
+
+static bool bar_below(const picture *c)
+{
+  return c->py < LOW;
+}
+
+/* The largest plot with equal axes that fits the canvas. */
+static void choose_size(picture *c)
+{
+  const pw_real aspect = (c->y[1] - c->y[0]) / (c->x[1] - c->x[0]);
+  const pw_real room_x = CANVAS - LEFT - RIGHT, room_y = CANVAS - TOP - BOTTOM;
+  const pw_real px = pw_min(room_x, room_y / aspect);
+  c->px = (int)pw_max(px, 20.0);
+  c->py = (int)pw_max(px * aspect, 20.0);
+  c->width = c->px + LEFT + RIGHT < NARROWEST ? NARROWEST : c->px + LEFT + RIGHT;
+  c->height = c->py + TOP + BOTTOM + (bar_below(c) ? BELOW : 0);
+}
+
+/* ---- colour range ---- */
+
+static int ascending(const void *a, const void *b)
+{
+  const pw_real x = *(const pw_real *)a, y = *(const pw_real *)b;
+  return (x > y) - (x < y);
+}
+
+static void choose_unit(picture *c)
+{
+  const pw_real largest = pw_max(fabs(c->lo), fabs(c->hi));
+  c->unit = c->what->unit;
+  c->scale = 1.0;
+  if (!c->unit) {
+    const bool small = largest < 200.0, big = largest >= 2e7;
+    c->unit = small ? "Pa" : big ? "MPa" : "kPa";
+    c->scale = small ? 1.0 : big ? 1e-6 : 1e-3;
+  }
+  c->lo *= c->scale;
+  c->hi *= c->scale;
+}
+
+/* Ends of the colour bar on round numbers: a 1-2-5 step that divides the range about ten times. */
+static void round_range(picture *c)
+{
+  const pw_real middle = 0.5 * (c->lo + c->hi);
+  const pw_real least = pw_max(1e-6 * fabs(middle), 1e-12);
+  if (c->hi - c->lo < least) {
+    c->lo = middle - pw_max(0.1 * fabs(middle), least);
+    c->hi = middle + pw_max(0.1 * fabs(middle), least);
+  }
+  const pw_real rough = (c->hi - c->lo) / 10.0, decade = pow(10.0, floor(log10(rough)));
+  const pw_real lead = rough / decade;
+  const pw_real step = decade * (lead < 1.5 ? 1.0 : lead < 3.5 ? 2.0 : lead < 7.5 ? 5.0 : 10.0);
+  c->lo = step * floor(c->lo / step + 1e-9);
+  c->hi = step * ceil(c->hi / step - 1e-9);
+}
+
+/* The range covers all but the outermost hundredth of the values on each side, so that a few
+ * points at a corner do not take the colours from the rest. */
+static void choose_range(picture *c)
+{
+  pw_real xy[8];
+  size_t n = 0;
+  for (pw_idx i = 0; i < c->p->n; i++) {
+    corners(c, i, xy);
+    const pw_real v = c->what->value(c, i);
+    if (coloured(c, i) && isfinite(v) && in_window(c, xy)) {
+      c->work[n++] = v;
+    }
+  }
+  c->lo = c->hi = 0.0;
+  if (n > 0) {
+    qsort(c->work, n, sizeof *c->work, ascending);
+    c->lo = c->work[n / 100];
+    c->hi = c->work[n - 1 - n / 100];
+  }
+  choose_unit(c);
+  round_range(c);
+}
+
+/* ---- script ---- */
+
+static void print_data(const picture *c, FILE *f, bool colour)
+{
+  pw_real xy[8];
+  fprintf(f, "$%s << END\n", colour ? "field" : "other");
+  for (pw_idx i = 0; i < c->p->n; i++) {
+    const pw_real v = colour ? c->scale * c->what->value(c, i) : 0.0;
+    corners(c, i, xy);
+    if (coloured(c, i) != colour || !isfinite(v) || !in_window(c, xy)) {
+      continue;
+    }
+    for (int k = 0; k < 4; k++) {
+      fprintf(f, "%.6g %.6g %.6g\n", xy[2 * k], xy[2 * k + 1], v);
+    }
+    fprintf(f, "\n");
+  }
+  fprintf(f, "END\n");
+}
+
+static int print_outlines(const picture *c, FILE *f)
+{
+  int n = 0;
+  fprintf(f, "$outline << END\n");
+  for (; n < OUTLINES; n++) {
+    int count = pw_sim_outline(c->sim, n, c->work, OUTLINE_POINTS);
+    if (count <= 0) {
+      break;
+    }
+    for (int k = 0; k < count; k++) {
+      fprintf(f, "%.6g %.6g\n", c->work[2 * k], c->work[2 * k + 1]);
+    }
+    fprintf(f, "\n");
+  }
+  fprintf(f, "END\n");
+  return n;
+}
+
+/* The viridis map of S. van der Walt and N. Smith (2015) at eight equal steps. */
+static void print_palette(FILE *f)
+{
+  fprintf(f, "set palette defined (0 '#440154', 1 '#472d7b', 2 '#3b528b', 3 '#2c728e', "
+             "4 '#21918c', 5 '#28ae80', 6 '#5ec962', 7 '#addc30', 8 '#fde725')\n");
+}
+
+static void print_bar(const picture *c, FILE *f)
+{
+  const pw_real w = c->width, h = c->height;
+  if (bar_below(c)) {
+    fprintf(f, "set colorbox horizontal user origin %g,%g size %g,%g\n", LEFT / w, 75.0 / h,
+            c->px / w, BAR / h);
+    fprintf(f, "set cblabel '%s'\n", c->unit);
+  } else {
+    fprintf(f, "set colorbox vertical user origin %g,%g size %g,%g\n", (LEFT + c->px + BAR_GAP) / w,
+            BOTTOM / h, BAR / w, c->py / h);
+    fprintf(f, "set label 2 '%s' at screen %g,%g left\n", c->unit, (LEFT + c->px + BAR_GAP) / w,
+            (h - TOP + 28.0) / h);
+  }
+  fprintf(f, "set cbrange [%.9g:%.9g]\nset cbtics scale 0.5\n", c->lo, c->hi);
+}
+
+static void print_frame(const picture *c, pw_plot *plot)
+{
+  FILE *f = plot->script;
+  const pw_real w = c->width, h = c->height, base = BOTTOM + (bar_below(c) ? BELOW : 0);
+  const bool axi = c->scene->geometry == PW_AXI;
+  fprintf(f, "set lmargin at screen %g\nset rmargin at screen %g\n", LEFT / w, (LEFT + c->px) / w);
+  fprintf(f, "set bmargin at screen %g\nset tmargin at screen %g\n", base / h, (base + c->py) / h);
+  fprintf(f, "set xrange [%.9g:%.9g]\nset yrange [%.9g:%.9g]\n", c->x[0], c->x[1], c->y[0],
+          c->y[1]);
+  fprintf(f, "set xlabel '%s'\nset ylabel '%s'\n", axi ? "radius (m)" : "x (m)",
+          axi ? "height (m)" : "y (m)");
+  fprintf(f, "set border linewidth 0.8\nset tics out nomirror scale 0.6\nunset key\n");
+  fprintf(f, "set label 1 '%s, t = %.3f s' at screen %g,%g left font ',20'\n", c->what->title,
+          pw_sim_time(c->sim), LEFT / w, (h - 30.0) / h);
+  fprintf(f, "set label 3 ");
+  pw_plot_text(plot, c->scene->title);
+  fprintf(f, " at screen %g,%g left font ',13' textcolor '#606060' noenhanced\n", LEFT / w,
+          (h - 62.0) / h);
+}
+
+static void print_script(const picture *c, pw_plot *plot)
+{
+  FILE *f = plot->script;
+  print_frame(c, plot);
+  print_palette(f);
+  print_bar(c, f);
+  print_data(c, f, true);
+  print_data(c, f, false);
+  int outlines = print_outlines(c, f);
+  fprintf(f, "set style fill solid noborder\n");
+  fprintf(f, "plot $field using 1:2:3 with filledcurves closed fillcolor palette, "
+             "$other using 1:2 with filledcurves closed fillcolor rgb '#b8b8b8', ");
+  if (outlines > 0) {
+    fprintf(f, "$outline using 1:2 with lines linecolor rgb 'black' linewidth 1.4, ");
+  }
+  fprintf(f, "NaN notitle\n");
+}
+
+static pw_status draw(picture *c, const char *folder, const quantity *what)
+{
+  char name[128];
+  pw_plot plot;
+  c->what = what;
+  choose_range(c);
+  snprintf(name, sizeof name, "%s_t%06.3fs.png", what->file, pw_sim_time(c->sim));
+  PW_TRY(pw_plot_begin(folder, name, c->width, c->height, &plot));
+  print_script(c, &plot);
+  return pw_plot_end(&plot);
+}
+
+static pw_status draw_all(picture *c, const char *folder)
+{
+  static const quantity vertical = {"vertical_stress", "Vertical stress", NULL, stress_yy};
+  static const quantity radial = {"radial_stress", "Radial stress", NULL, stress_xx};
+  static const quantity horizontal = {"horizontal_stress", "Horizontal stress", NULL, stress_xx};
+  static const quantity mean = {"mean_stress", "Mean stress", NULL, mean_stress};
+  static const quantity velocity = {"speed", "Speed", "m/s", speed};
+  static const quantity ratio = {"void_ratio", "Void ratio", "", void_ratio};
+  static const quantity angle = {"mobilised_friction_angle", "Mobilised friction angle", "degrees",
+                                 friction_angle};
+  PW_TRY(draw(c, folder, &vertical));
+  PW_TRY(draw(c, folder, c->scene->geometry == PW_AXI ? &radial : &horizontal));
+  if (has_void_ratio(c)) {
+    PW_TRY(draw(c, folder, &ratio));
+  }
+  if (c->soil_only) {
+    return draw(c, folder, &angle);
+  }
+  PW_TRY(draw(c, folder, &mean));
+  return draw(c, folder, &velocity);
+}
+
+pw_status pw_pictures_fields(const char *folder, const pw_sim *sim)
+{
+  picture c = {.sim = sim, .scene = pw_sim_scene(sim), .p = pw_sim_points(sim)};
+  pw_off room = c.p->n > 2 * OUTLINE_POINTS ? c.p->n : 2 * OUTLINE_POINTS;
+  PW_TRY(pw_make_folder(folder));
+  PW_TRY(pw_mem_alloc("pictures", room, sizeof *c.work, &c.work));
+  c.soil_only = has_soil(c.scene);
+  choose_window(&c);
+  choose_size(&c);
+  pw_status status = draw_all(&c, folder);
+  pw_mem_free(&c.work);
+  return status;
+}

@@ -1,0 +1,62 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "engine/scene_check.h"
+#include "io/scene_file_reader.h"
+
+#include <stdio.h>
+#include <string.h>
+
+/* Report a broken rule at the key its message begins with, else at its section. */
+static bool report(pw_reader *r, pw_status status, const pw_yaml_node *node)
+{
+  static const char letters[] = "abcdefghijklmnopqrstuvwxyz0123456789_";
+  static const pw_yaml_place start = {-1, 1, 1};
+  if (status == PW_OK) {
+    return true;
+  }
+  char key[PW_NAME];
+  const char *rule = pw_error_text();
+  snprintf(key, sizeof key, "%.*s", (int)strspn(rule, letters), rule);
+  const pw_yaml_node *child = node ? pw_yaml_find(node, key) : NULL;
+  const pw_yaml_place *place = node ? pw_reader_place(node) : &start;
+  pw_yaml_error(r->m, child ? &child->place : place, "%s", rule);
+  return false;
+}
+
+static bool all_clean(const pw_reader_part *part, int n)
+{
+  for (int i = 0; i < n; i++) {
+    if (!part[i].clean) {
+      return false;
+    }
+  }
+  return true;
+}
+
+/* Rules are applied only where all they look at is clean: no errors that follow from errors. */
+void pw_reader_check(pw_reader *r)
+{
+  const pw_scene *s = r->scene;
+  r->grid.clean =
+      r->grid.clean && r->geometry_known && report(r, pw_scene_check_grid(s), r->grid.node);
+  if (r->time.clean) {
+    report(r, pw_scene_check_time(s), r->time.node);
+  }
+  if (r->output.clean) {
+    report(r, pw_scene_check_output(s), r->output.node);
+  }
+  for (int i = 0; i < s->nmaterial; i++) {
+    r->material[i].clean =
+        r->material[i].clean && report(r, pw_scene_check_material(s, i), r->material[i].node);
+  }
+  for (int i = 0; i < s->nbody; i++) {
+    r->body[i].clean =
+        r->body[i].clean && r->grid.clean && report(r, pw_scene_check_body(s, i), r->body[i].node);
+  }
+  bool ready =
+      r->grid.clean && all_clean(r->material, s->nmaterial) && all_clean(r->body, s->nbody);
+  for (int i = 0; ready && i < s->neffect; i++) {
+    if (r->effect[i].clean) {
+      report(r, pw_scene_check_effect(s, i), r->effect[i].node);
+    }
+  }
+}

@@ -1,0 +1,310 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "kernels/hypoplastic.h"
+
+#include "kernels/hypoplastic_rates.h"
+
+/** Smallest substep, as a fraction of the increment. */
+#define SUBSTEP_MIN 1e-5
+
+/** One integration in progress; stresses are sigma* throughout. */
+typedef struct run {
+  const pw_hypo *h;
+  pw_t6 de;
+  pw_real size, log_dvol; /* |dE| and ln of the volume ratio */
+  pw_real specific;       /* 1 + e at the start */
+  pw_t6 stress, delta;
+  pw_real substep;
+  pw_hypo_slope last; /* at the end of the last substep tried */
+  bool swept;         /* delta has reached R dE/|dE| and stays there */
+  pw_hypo_path *path;
+  pw_material_counts counts;
+} run;
+
+static pw_real void_ratio_at(const run *r, pw_real t)
+{
+  return r->specific * pw_exp(t * r->log_dvol) - 1.0;
+}
+
+static pw_hypo_slope slope_with(const run *r, pw_t6 stress, pw_t6 delta, pw_real e)
+{
+  return pw_hypo_slope_of(r->h, stress, delta, e, r->de, r->size, true);
+}
+
+static pw_hypo_slope slope_without(const run *r, pw_t6 stress, pw_t6 delta, pw_real e)
+{
+  return pw_hypo_slope_of(r->h, stress, delta, e, r->de, r->size, false);
+}
+
+/** Rates at a stage; a stress beyond the limits is moved back first. */
+static pw_hypo_slope stage(run *r, pw_t6 *stress, pw_t6 delta, pw_real t)
+{
+  bool with = r->h->intergranular && !r->swept;
+  pw_real e = void_ratio_at(r, t);
+  r->counts.rhs++;
+  pw_hypo_slope k = (with ? slope_with : slope_without)(r, *stress, delta, e);
+  if (!(k.inside > 0.0)) {
+    *stress = pw_hypo_limit(r->h, *stress);
+    k = (with ? slope_with : slope_without)(r, *stress, delta, e);
+  }
+  if (r->swept) {
+    k.delta = (pw_t6){0};
+  }
+  return k;
+}
+
+/** |delta| never exceeds R; only rounding and the truncation of a stage would make it. */
+static pw_t6 clip(const pw_hypo *h, pw_t6 delta)
+{
+  pw_real rho2 = pw_t6_dot(delta, delta) * h->inv_r2;
+  return rho2 > 1.0 ? pw_t6_scale(1.0 / sqrt(rho2), delta) : delta;
+}
+
+/** An embedded step of orders 3(2) from @p k1: nodes 0, 1/2, 1, weights 1/6, 2/3, 1/6. */
+static pw_real attempt(run *r, const pw_hypo_slope *k1, pw_real t, pw_real step, pw_t6 *stress,
+                       pw_t6 *delta)
+{
+  pw_t6 mid = pw_t6_axpy(r->stress, 0.5 * step, k1->stress);
+  pw_t6 mid_delta = pw_t6_axpy(r->delta, 0.5 * step, k1->delta);
+  pw_hypo_slope k2 = stage(r, &mid, mid_delta, t + 0.5 * step);
+  pw_t6 end = pw_t6_axpy(pw_t6_axpy(r->stress, -step, k1->stress), 2.0 * step, k2.stress);
+  pw_t6 end_delta = pw_t6_axpy(pw_t6_axpy(r->delta, -step, k1->delta), 2.0 * step, k2.delta);
+  pw_hypo_slope k3 = stage(r, &end, end_delta, t + step);
+  r->last = k3;
+  pw_t6 sum = pw_t6_axpy(pw_t6_axpy(k1->stress, 4.0, k2.stress), 1.0, k3.stress);
+  pw_t6 sum_delta = pw_t6_axpy(pw_t6_axpy(k1->delta, 4.0, k2.delta), 1.0, k3.delta);
+  pw_t6 err = pw_t6_axpy(pw_t6_axpy(k1->stress, -2.0, k2.stress), 1.0, k3.stress);
+  pw_t6 err_delta = pw_t6_axpy(pw_t6_axpy(k1->delta, -2.0, k2.delta), 1.0, k3.delta);
+  pw_real sixth = step * (1.0 / 6.0);
+  *stress = pw_t6_axpy(r->stress, sixth, sum);
+  *delta = pw_t6_axpy(r->delta, sixth, sum_delta);
+  pw_real on_stress = pw_t6_norm(err) / (pw_t6_norm(*stress) + 1000.0);
+  pw_real on_delta = r->h->intergranular ? pw_t6_norm(err_delta) / r->h->r : 0.0;
+  return sixth * (on_delta > on_stress ? on_delta : on_stress); /* NaN when the stress is */
+}
+
+/** Intergranular strain alone over a part @p rest of the increment (it needs no stress). */
+static pw_t6 evolve_delta(const run *r, pw_real rest)
+{
+  const pw_hypo *h = r->h;
+  pw_real length = rest * r->size / (0.5 * h->r);
+  if (!h->intergranular || r->size == 0.0) {
+    return r->delta;
+  }
+  if (length > 30.0) { /* more than 15 R: it has turned into the direction of the increment */
+    return pw_t6_scale(h->r / r->size, r->de);
+  }
+  int n = (int)length + 1;
+  pw_t6 delta = r->delta, step = pw_t6_scale(rest / n, r->de);
+  for (int i = 0; i < n; i++) {
+    pw_t6 at = delta, move = step;
+    for (int k = 0; k < 2; k++) {
+      pw_real dd = pw_max(pw_t6_dot(at, at), 1e-200), turn = pw_t6_dot(at, step);
+      pw_real rho_beta = pw_exp(0.5 * h->beta_r * pw_log(dd * h->inv_r2));
+      move = pw_t6_axpy(step, turn > 0.0 ? -rho_beta * turn / dd : 0.0, at);
+      at = pw_t6_axpy(delta, 0.5, move);
+    }
+    delta = clip(h, pw_t6_axpy(delta, 1.0, move));
+  }
+  return delta;
+}
+
+static void record(run *r, pw_real t, int kind)
+{
+  r->counts.substeps++;
+  if (r->path && r->path->n < PW_HYPO_PATH_STEPS) {
+    r->path->end[r->path->n] = t;
+    r->path->kind[r->path->n++] = (unsigned char)kind;
+  }
+}
+
+static void accept(run *r, pw_t6 stress, pw_t6 delta)
+{
+  bool inside = pw_hypo_inside(r->h, stress);
+  r->stress = inside ? stress : pw_hypo_limit(r->h, stress);
+  r->counts.cut_off += inside ? 0 : 1;
+  if (r->h->intergranular) {
+    r->delta = clip(r->h, delta);
+  }
+}
+
+/**
+ * A stress-free point that the rest of the increment keeps stress-free takes it at once: the
+ * error control would spend its substeps on a stress that is cut off after each of them.
+ */
+static bool separated(run *r, const pw_hypo_slope *k1, pw_real rest)
+{
+  pw_real trace = pw_t6_trace(r->stress), least = -3.0 * r->h->p_min;
+  if (trace < least * (1.0 + 1e-9) || trace + rest * pw_t6_trace(k1->stress) < least) {
+    return false;
+  }
+  accept(r, pw_t6_axpy(r->stress, rest, k1->stress), evolve_delta(r, rest));
+  r->last = *k1;
+  return true;
+}
+
+/** Within a hundredth of the tolerance (relative to R) of full mobilisation, delta = R dE/|dE| solves its rate and
+ *  the rates become those without intergranular strain: no need to follow its decay. */
+static bool becomes_swept(run *r)
+{
+  if (!r->h->intergranular || r->swept || r->size == 0.0) {
+    return false;
+  }
+  pw_t6 full = pw_t6_scale(r->h->r / r->size, r->de);
+  pw_t6 off = pw_t6_axpy(full, -1.0, r->delta);
+  pw_real near = 0.01 * r->h->tolerance * r->h->r;
+  if (pw_t6_dot(off, off) > near * near) {
+    return false;
+  }
+  r->delta = full;
+  r->swept = true;
+  return true;
+}
+
+static pw_real next_substep(const run *r, pw_real step, pw_real err)
+{
+  pw_real factor = 0.25; /* for an error that is not a number */
+  if (err >= 0.0) {
+    factor = 0.9 * cbrt(r->h->tolerance / pw_max(err, 1e-30));
+    factor = pw_min(4.0, pw_max(0.2, factor));
+  }
+  return pw_min(1.0, pw_max(SUBSTEP_MIN, step * factor));
+}
+
+/** Integrate from @p t to @p end with error control. */
+static void advance(run *r, pw_real t, pw_real end)
+{
+  pw_hypo_slope k1 = {0};
+  bool moved = true;
+  while (t < end) {
+    if (moved) {
+      k1 = stage(r, &r->stress, r->delta, t);
+      if (separated(r, &k1, end - t)) {
+        record(r, end, PW_HYPO_SEPARATED);
+        return;
+      }
+    }
+    bool exhausted = r->counts.substeps >= r->h->max_substeps;
+    bool last = exhausted || r->substep >= (end - t) * (1.0 - 1e-9);
+    pw_real step = last ? end - t : r->substep;
+    pw_t6 stress, delta;
+    pw_real err = attempt(r, &k1, t, step, &stress, &delta);
+    bool good = err <= r->h->tolerance;
+    bool forced = !good && (exhausted || step <= SUBSTEP_MIN);
+    pw_real next = next_substep(r, step, err);
+    r->substep = good && last ? pw_max(r->substep, next) : next;
+    moved = good || forced;
+    if (!moved) {
+      r->counts.rejected++;
+      continue;
+    }
+    if (!(pw_t6_is_finite(stress) > 0.0) || !(pw_t6_is_finite(delta) > 0.0)) {
+      stress = r->stress;
+      delta = pw_t6_axpy(r->delta, step, r->de);
+    }
+    accept(r, stress, delta);
+    t = last ? end : t + step;
+    r->counts.forced += forced ? 1 : 0;
+    record(r, t, t < 1.0 && becomes_swept(r) ? PW_HYPO_SWEPT : PW_HYPO_RUNGE_KUTTA);
+  }
+}
+
+/** Start a run; false when the increment cannot be taken. */
+static bool begin(run *r, const pw_hypo *h, pw_t6 de, pw_real dvol, const pw_hypo_point *p)
+{
+  *r = (run){.h = h, .de = de, .size = pw_t6_norm(de), .delta = p->delta, .substep = p->substep};
+  r->stress = pw_t6_shift(p->stress, -h->p_t);
+  r->specific = 1.0 + p->void_ratio;
+  bool usable = dvol > 0.0 && r->specific * dvol > 1.0 + 1e-9 && isfinite(r->specific * dvol);
+  r->log_dvol = usable ? log(dvol) : 0.0;
+  if (!(r->substep > 0.0 && r->substep <= 1.0)) {
+    r->substep = 1.0;
+  }
+  return usable && isfinite(r->size) && pw_t6_is_finite(p->stress) > 0.0 &&
+         pw_t6_is_finite(p->delta) > 0.0;
+}
+
+/** Time at which delta:D changes sign, 0 if it does not: as long as delta:D <= 0, delta moves
+ *  along D and the product grows linearly. */
+static pw_real turning_time(const run *r)
+{
+  pw_real turn = 0.0;
+  if (r->h->intergranular && r->size > 0.0) {
+    turn = -pw_t6_dot(r->delta, r->de) / (r->size * r->size);
+  }
+  return turn > 1e-6 && turn < 1.0 - 1e-6 ? turn : 0.0;
+}
+
+static pw_status finish(const run *r, pw_real dvol, pw_hypo_point *p)
+{
+  if (!(pw_t6_is_finite(r->stress) > 0.0) || !(pw_t6_is_finite(r->delta) > 0.0)) {
+    return PW_RETRY_STRESS;
+  }
+  p->stress = pw_t6_shift(r->stress, r->h->p_t);
+  p->delta = r->delta;
+  p->void_ratio = (1.0 + p->void_ratio) * dvol - 1.0;
+  p->substep = r->substep;
+  return PW_OK;
+}
+
+pw_status pw_hypo_integrate(const pw_hypo *h, pw_t6 de, pw_real dvol, pw_hypo_point *p,
+                            pw_hypo_path *path, pw_material_counts *counts, pw_real *modulus)
+{
+  run r;
+  if (!begin(&r, h, de, dvol, p)) {
+    return PW_RETRY_STRESS;
+  }
+  pw_real split = turning_time(&r);
+  r.path = path;
+  if (path) {
+    path->n = 0;
+    path->split = split;
+  }
+  if (split > 0.0) {
+    advance(&r, 0.0, split);
+  }
+  advance(&r, split, 1.0);
+  PW_TRY(finish(&r, dvol, p));
+  if (counts) {
+    counts->substeps += r.counts.substeps;
+    counts->rhs += r.counts.rhs;
+    counts->rejected += r.counts.rejected;
+    counts->forced += r.counts.forced;
+    counts->cut_off += r.counts.cut_off;
+  }
+  if (modulus) {
+    *modulus = pw_hypo_modulus(h, r.last);
+  }
+  return PW_OK;
+}
+
+pw_status pw_hypo_repeat(const pw_hypo *h, pw_t6 de, pw_real dvol, pw_hypo_point *p,
+                         const pw_hypo_path *path)
+{
+  run r;
+  if (!begin(&r, h, de, dvol, p)) {
+    return PW_RETRY_STRESS;
+  }
+  pw_real t = 0.0, split = turning_time(&r), was = path->split;
+  bool stretch = was > 0.0 && split > 0.0;
+  for (int i = 0; i < path->n; i++) {
+    pw_hypo_slope k1 = stage(&r, &r.stress, r.delta, t);
+    pw_real end = path->end[i];
+    if (stretch && i < path->n - 1) {
+      end = end <= was ? end * (split / was) : 1.0 - (1.0 - end) * ((1.0 - split) / (1.0 - was));
+    }
+    pw_real step = end - t;
+    t = end;
+    if (path->kind[i] == PW_HYPO_SEPARATED) {
+      accept(&r, pw_t6_axpy(r.stress, step, k1.stress), evolve_delta(&r, step));
+      continue;
+    }
+    pw_t6 stress, delta;
+    (void)attempt(&r, &k1, t - step, step, &stress, &delta);
+    accept(&r, stress, delta);
+    if (path->kind[i] == PW_HYPO_SWEPT && r.size > 0.0) {
+      r.delta = pw_t6_scale(h->r / r.size, de);
+      r.swept = true;
+    }
+  }
+  return finish(&r, dvol, p);
+}

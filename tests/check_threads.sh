@@ -1,0 +1,15 @@
+#!/bin/bash
+# SPDX-License-Identifier: GPL-3.0-or-later
+# Checkpoints and histories are the same bytes for 1, 2, 3 and 4 threads.
+. "$(dirname "$0")/harness.sh"
+
+for scene in "$scenes"/small_*.yaml; do
+  name=$(basename "$scene" .yaml)
+  for threads in 1 2 3 4; do
+    expect_exit 0 "$program" run "$scene" $plain --threads $threads --out ${name}_$threads
+    expect_text ${name}_$threads/summary.json "\"threads\": $threads,"
+    expect_same ${name}_1/checkpoint.h5 ${name}_$threads/checkpoint.h5
+    expect_same ${name}_1/history.csv ${name}_$threads/history.csv
+  done
+done
+done_checking

@@ -1,0 +1,82 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/**
+ * @file tests/contact_helpers.h
+ * @brief Scenes with two bodies in contact, for tests of the contact effects.
+ */
+#ifndef PW_TESTS_CONTACT_HELPERS_H
+#define PW_TESTS_CONTACT_HELPERS_H
+
+#include "engine/effects/contact.h"
+#include "tests/engine_helpers.h"
+
+/** The two contacts. */
+typedef enum test_contact { TEST_PENALTY, TEST_FRICTIONAL, TEST_CONTACTS } test_contact;
+
+static const char *const test_contact_name[TEST_CONTACTS] = {"penalty", "frictional"};
+
+/** Add a contact between bodies @p master and @p slave. */
+static inline void test_add_contact(pw_scene *scene, test_contact kind, int master, int slave,
+                                    pw_real friction, pw_real stiffness, pw_real segment)
+{
+  if (kind == TEST_PENALTY) {
+    pw_contact_penalty_param *p = pw_scene_add_effect(scene, "contact_penalty");
+    assert_non_null(p);
+    p->master = master;
+    p->slave = slave;
+    p->friction = friction;
+    p->normal_stiffness_pa_m = stiffness;
+    p->segment_m = segment;
+  } else {
+    pw_contact_frictional_param *p = pw_scene_add_effect(scene, "contact_frictional");
+    assert_non_null(p);
+    p->master = master;
+    p->slave = slave;
+    p->friction = friction;
+  }
+}
+
+static inline pw_scene_body *test_disc(pw_scene *scene, int material, pw_real x, pw_real y,
+                                       pw_real radius, pw_real size)
+{
+  pw_scene_body *b = &scene->body[scene->nbody];
+  *b = (pw_scene_body){.material = material,
+                       .shape = PW_SHAPE_DISC,
+                       .centre_m = {x, y},
+                       .radius_m = radius,
+                       .point_size_m = size};
+  snprintf(b->name, sizeof b->name, "body%d", scene->nbody++);
+  return b;
+}
+
+/** Hold a body at rest. */
+static inline void test_hold(pw_scene *scene, int body)
+{
+  pw_prescribed_motion_param *p = pw_scene_add_effect(scene, "prescribed_motion");
+  assert_non_null(p);
+  p->body = body;
+}
+
+/** Mass, momentum along x and y, centre x and y of a body, plain sums over its points. */
+static inline void test_body_sums(const pw_sim *sim, int body, pw_real *out)
+{
+  const pw_points *p = &sim->points;
+  pw_real sum[5] = {0.0, 0.0, 0.0, 0.0, 0.0};
+  for (pw_idx id = 0; id < p->n; id++) {
+    pw_idx i = p->slot[id];
+    if (p->body[i] != body && body >= 0) {
+      continue;
+    }
+    sum[0] += p->mass[i];
+    for (int a = 0; a < 2; a++) {
+      sum[1 + a] += p->mass[i] * p->v[a * p->ld + i];
+      sum[3 + a] += p->mass[i] * p->x[a * p->ld + i];
+    }
+  }
+  sum[3] /= sum[0];
+  sum[4] /= sum[0];
+  for (int i = 0; i < 5; i++) {
+    out[i] = sum[i];
+  }
+}
+
+#endif /* PW_TESTS_CONTACT_HELPERS_H */
