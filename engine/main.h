@@ -13,8 +13,8 @@
  *
  * The OpenMP runtime reads its settings when the program is loaded, so the program starts itself
  * once more with OMP_PROC_BIND and OMP_PLACES set. It does not when the user has set one of them,
- * when there is one thread only, or when the run leaves half of the processors or more to others:
- * bound runs side by side would end up on the same cores.
+ * when there is one thread only, when the cores cannot be told apart, or when the run leaves half
+ * of the processors or more to others: bound runs side by side would end up on the same cores.
  * @param[in] argv    of main()
  * @param[in] threads asked for; 0: the runtime's choice
  * @return true when threads are bound.

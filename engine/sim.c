@@ -264,6 +264,9 @@ static pw_status build(pw_sim *sim)
   pw_for_blocks(&sim->blocks, sim->threads, pw_block_wave_speed, sim);
   PW_TRY(pw_update_collect(sim));
   sim->material = (pw_material_counts){0};
+  for (pw_idx i = 0; i < sim->points.n; i++) {
+    sim->mass += sim->points.mass[i];
+  }
   for (int b = 0; b < sim->nbody; b++) {
     pw_real com[6];
     pw_body_centre(sim, b, com);

@@ -73,6 +73,8 @@ struct pw_sim {
   pw_real dt_contact; /**< largest step a penalty contact allows, set by it each step; 0: none */
   pw_real measure;    /**< 2 pi (axisymmetric) or 1: times a per-radian value = whole body */
   pw_real mass_cut_off; /**< kg */
+  pw_real mass;         /**< of all points; kg per metre or radian */
+  pw_real signal_speed; /**< largest c + |v| at the end of the last step; m/s */
   pw_real load_factor;  /**< of gravity now, 0..1: the ramp; 1 without gravity */
   int node_slot;        /**< PW_NODE_VEL or PW_NODE_REMAP: what a constraint hook is to change */
   bool sort_needed;        /**< points are not in the order of their blocks */

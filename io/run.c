@@ -4,6 +4,7 @@
 #include <errno.h>
 #include <stdlib.h>
 #include <string.h>
+#include <unistd.h>
 
 #include "io/progress.h"
 #include "io/restart.h"
@@ -19,6 +20,7 @@ typedef struct run {
   pw_scene scene;
   pw_sim *sim;
   pw_run_folder folder;
+  int lock; /* file descriptor that keeps other runs out of the folder, or -1 */
   pw_run_outputs outputs;
   pw_progress progress;
   bool resumed;
@@ -117,7 +119,6 @@ static void print_start(run *r)
 
 static pw_status open_outputs(run *r)
 {
-  PW_TRY(pw_make_folder(r->folder.path));
   if (!r->resumed) {
     PW_TRY(pw_run_folder_clear(&r->folder));
   }
@@ -205,7 +206,9 @@ static pw_exit fail(run *r, pw_status status)
 {
   char text[2 * PW_WARNING_TEXT];
 
-  snprintf(text, sizeof text, "%s: %s", pw_status_text(status), pw_error_text());
+  const char *code = pw_status_text(status), *detail = pw_error_text();
+  bool said = strstr(detail, code) != NULL;
+  snprintf(text, sizeof text, "%s%s%s", said ? "" : code, said ? "" : ": ", detail);
   pw_progress_clear(&r->progress);
   fprintf(r->err, "error: %s\n", text);
   if (write_summary(r, "failed", text) != PW_OK) {
@@ -231,8 +234,14 @@ static pw_exit execute(run *r)
     print_end(r, "finished before");
     return PW_EXIT_FINISHED;
   }
+  pw_status status = pw_run_folder_lock(&r->folder, &r->lock);
+  if (status == PW_ERR_INTERRUPTED) {
+    return complain(r, PW_EXIT_USAGE, status);
+  }
   pw_run_signals_catch();
-  pw_status status = open_outputs(r);
+  if (status == PW_OK) {
+    status = open_outputs(r);
+  }
   if (status == PW_OK) {
     status = loop(r);
   }
@@ -257,6 +266,7 @@ pw_exit pw_run(const pw_run_options *options, FILE *out, FILE *err)
   r->options = options;
   r->out = out;
   r->err = err;
+  r->lock = -1;
   r->wall_first_s = pw_wall_clock();
   pw_exit code = read_scene(r);
   if (code == PW_EXIT_FINISHED) {
@@ -269,6 +279,9 @@ pw_exit pw_run(const pw_run_options *options, FILE *out, FILE *err)
     print_start(r);
     code = execute(r);
     pw_run_signals_restore();
+  }
+  if (r->lock >= 0) {
+    close(r->lock);
   }
   pw_run_outputs_close(&r->outputs);
   pw_sim_destroy(&r->sim);

@@ -3,9 +3,10 @@
 
 #include <dirent.h>
 #include <errno.h>
+#include <fcntl.h>
 #include <stdio.h>
 #include <string.h>
-#include <sys/stat.h>
+#include <sys/file.h>
 #include <unistd.h>
 
 /* "cases/bar_wave/scene.yaml" -> "bar_wave", "soil.yaml" -> "soil": [first, first + length). */
@@ -67,6 +68,21 @@ bool pw_run_folder_finished(const pw_run_folder *f)
   head[fread(head, 1, sizeof head - 1, file)] = '\0';
   fclose(file);
   return strstr(head, "\"status\": \"finished\"") != NULL;
+}
+
+pw_status pw_run_folder_lock(const pw_run_folder *f, int *lock)
+{
+  *lock = -1;
+  PW_TRY(pw_make_folder(f->path));
+  int fd = open(f->path, O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+  if (fd >= 0 && flock(fd, LOCK_EX | LOCK_NB) != 0) {
+    bool busy = errno == EWOULDBLOCK;
+    close(fd);
+    fd = -1;
+    PW_REQUIRE(!busy, PW_ERR_INTERRUPTED, "another run is at work in %s", f->path);
+  }
+  *lock = fd;
+  return PW_OK;
 }
 
 static pw_status remove_file(const char *path)

@@ -34,6 +34,14 @@ bool pw_run_folder_holds_checkpoint(const pw_run_folder *f);
 bool pw_run_folder_finished(const pw_run_folder *f);
 
 /**
+ * @brief Make the folder and keep other runs out of it as long as @p lock is open. The lock goes
+ *        with the process, however it ends.
+ * @param[out] lock file descriptor to close at the end; -1 when the file system knows no locks
+ * @return PW_OK; PW_ERR_INTERRUPTED when another run is at work there; PW_ERR_FILE.
+ */
+pw_status pw_run_folder_lock(const pw_run_folder *f, int *lock);
+
+/**
  * @brief Remove what an earlier run wrote: summary, history, checkpoint, pictures, ParaView files.
  *        Other files stay.
  * @return PW_OK; PW_ERR_FILE with path and reason.

@@ -140,6 +140,21 @@ pw_status pw_hypo_integrate(const pw_hypo *h, pw_t6 de, pw_real dvol, pw_hypo_po
  */
 void pw_hypo_advance_smooth(const pw_hypo *h, bool plane, const pw_stress_args *a, pw_real *done);
 
+/**
+ * @brief Advance the points that need several substeps, a few at once.
+ *
+ * The substeps of pw_hypo_integrate() in vector registers; points that meet a limit of stress or
+ * of the number of substeps are left for it. Independent of the other points as above.
+ * @param[in,out] done  points with 1 are skipped; set to 1 for a point advanced here
+ */
+void pw_hypo_advance_rest(const pw_hypo *h, bool plane, const pw_stress_args *a, pw_real *done);
+
+/** @brief Point @p i of a batch, rotated by its spin; @p plane: its spins yz and zx are zero. */
+pw_hypo_point pw_hypo_read(const pw_hypo *h, const pw_stress_args *a, bool plane, pw_idx i);
+
+/** @brief Write stress and state of point @p i of a batch. */
+void pw_hypo_write(const pw_hypo *h, const pw_stress_args *a, const pw_hypo_point *p, pw_idx i);
+
 /** @brief As pw_hypo_integrate() with the substeps of @p path and no error control. They are
  *  stretched in both parts so that delta:D changes sign between the same two of them. */
 pw_status pw_hypo_repeat(const pw_hypo *h, pw_t6 de, pw_real dvol, pw_hypo_point *p,

@@ -3,9 +3,6 @@
 
 #include "kernels/hypoplastic_rates.h"
 
-/** Smallest substep, as a fraction of the increment. */
-#define SUBSTEP_MIN 1e-5
-
 /** One integration in progress; stresses are sigma* throughout. */
 typedef struct run {
   const pw_hypo *h;
@@ -146,7 +143,7 @@ static bool separated(run *r, const pw_hypo_slope *k1, pw_real rest)
  *  the rates become those without intergranular strain: no need to follow its decay. */
 static bool becomes_swept(run *r)
 {
-  if (!r->h->intergranular || r->swept || r->size == 0.0) {
+  if (!r->h->intergranular || r->swept || r->size <= PW_HYPO_SWEEP * r->h->r) {
     return false;
   }
   pw_t6 full = pw_t6_scale(r->h->r / r->size, r->de);
@@ -158,16 +155,6 @@ static bool becomes_swept(run *r)
   r->delta = full;
   r->swept = true;
   return true;
-}
-
-static pw_real next_substep(const run *r, pw_real step, pw_real err)
-{
-  pw_real factor = 0.25; /* for an error that is not a number */
-  if (err >= 0.0) {
-    factor = 0.9 * cbrt(r->h->tolerance / pw_max(err, 1e-30));
-    factor = pw_min(4.0, pw_max(0.2, factor));
-  }
-  return pw_min(1.0, pw_max(SUBSTEP_MIN, step * factor));
 }
 
 /** Integrate from @p t to @p end with error control. */
@@ -189,8 +176,10 @@ static void advance(run *r, pw_real t, pw_real end)
     pw_t6 stress, delta;
     pw_real err = attempt(r, &k1, t, step, &stress, &delta);
     bool good = err <= r->h->tolerance;
-    bool forced = !good && (exhausted || step <= SUBSTEP_MIN);
-    pw_real next = next_substep(r, step, err);
+    bool forced = !good && (exhausted || step <= PW_HYPO_SUBSTEP_MIN);
+    /* an error that is not a number: a quarter */
+    pw_real next = pw_hypo_next_substep(r->h, step, err);
+    next = err >= 0.0 ? next : pw_max(PW_HYPO_SUBSTEP_MIN, 0.25 * step);
     r->substep = good && last ? pw_max(r->substep, next) : next;
     moved = good || forced;
     if (!moved) {
@@ -223,15 +212,9 @@ static bool begin(run *r, const pw_hypo *h, pw_t6 de, pw_real dvol, const pw_hyp
          pw_t6_is_finite(p->delta) > 0.0;
 }
 
-/** Time at which delta:D changes sign, 0 if it does not: as long as delta:D <= 0, delta moves
- *  along D and the product grows linearly. */
 static pw_real turning_time(const run *r)
 {
-  pw_real turn = 0.0;
-  if (r->h->intergranular && r->size > 0.0) {
-    turn = -pw_t6_dot(r->delta, r->de) / (r->size * r->size);
-  }
-  return turn > 1e-6 && turn < 1.0 - 1e-6 ? turn : 0.0;
+  return r->h->intergranular ? pw_hypo_turning_time(r->delta, r->de) : 0.0;
 }
 
 static pw_status finish(const run *r, pw_real dvol, pw_hypo_point *p)

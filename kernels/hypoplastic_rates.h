@@ -15,6 +15,12 @@
 /** Least ratio (e - e_d)/(e_c - e_d) for which f_d is a power; below, it falls linearly to 0. */
 #define PW_HYPO_R_MIN 1e-3
 
+/** Smallest substep, as a fraction of the increment. */
+#define PW_HYPO_SUBSTEP_MIN 1e-5
+
+/** Increments beyond this many R may bring delta to full mobilisation on the way. */
+#define PW_HYPO_SWEEP 5.0
+
 /** Normalised stress s = sigma* / tr sigma* and what follows from its invariants. */
 typedef struct pw_hypo_shape {
   pw_t6 s;
@@ -162,6 +168,26 @@ PW_INLINE pw_real pw_hypo_modulus(const pw_hypo *h, pw_hypo_slope k)
   pw_real s_max = 1.0 / 3.0 + pw_t6_largest_bound(0.5 * k.np, k.j3);
   pw_real linear = k.c1 + k.c2 * s_max * s_max;
   return h->speed_linear * linear + h->speed_n * k.c_n * (2.0 * s_max - 1.0 / 3.0);
+}
+
+/** @brief Substep to try after one of size @p step with the error @p err, of order 3. */
+PW_INLINE pw_real pw_hypo_next_substep(const pw_hypo *h, pw_real step, pw_real err)
+{
+  pw_real ratio = h->tolerance / (err > 1e-30 ? err : 1e-30);
+  pw_real factor = 0.9 * pw_exp(pw_log(ratio) * (1.0 / 3.0));
+  factor = factor < 0.2 ? 0.2 : (factor < 4.0 ? factor : 4.0);
+  pw_real next = step * factor;
+  next = next > PW_HYPO_SUBSTEP_MIN ? next : PW_HYPO_SUBSTEP_MIN;
+  return next < 1.0 ? next : 1.0;
+}
+
+/** @brief Time at which delta:D changes sign, 0 if it does not: as long as delta:D <= 0, delta
+ *  moves along D and the product grows linearly. */
+PW_INLINE pw_real pw_hypo_turning_time(pw_t6 delta, pw_t6 de)
+{
+  pw_real size2 = pw_t6_dot(de, de), turn = -pw_t6_dot(delta, de);
+  turn = size2 > 0.0 ? turn / size2 : 0.0;
+  return turn > 1e-6 ? (turn < 1.0 - 1e-6 ? turn : 0.0) : 0.0;
 }
 
 #endif /* PW_KERNELS_HYPOPLASTIC_RATES_H */

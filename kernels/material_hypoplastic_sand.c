@@ -130,36 +130,6 @@ static void init(const pw_real *v, pw_idx n, pw_idx ld, const pw_real *stress, p
   }
 }
 
-static pw_hypo_point load(const pw_hypo *h, const pw_stress_args *a, bool plane, pw_idx i)
-{
-  size_t l = (size_t)a->ld, li = (size_t)a->ldi, p = (size_t)i;
-  pw_hypo_point y = {.stress = pw_t6_load(a->stress + p, l), .substep = 1.0};
-  y.void_ratio = a->state[p];
-  pw_rot r = {0};
-  pw_real wxy = a->spin[p];
-  if (!plane) {
-    r = pw_rot_hughes_winget(wxy, a->spin[li + p], a->spin[2 * li + p]);
-  }
-  y.stress = plane ? pw_t6_rotate_plane(wxy, y.stress) : pw_t6_rotate(r, y.stress);
-  if (h->intergranular) {
-    pw_t6 delta = pw_t6_load(a->state + DELTA * l + p, l);
-    y.delta = plane ? pw_t6_rotate_plane(wxy, delta) : pw_t6_rotate(r, delta);
-    y.substep = a->state[SUBSTEP * l + p];
-  }
-  return y;
-}
-
-static void store(const pw_hypo *h, const pw_stress_args *a, const pw_hypo_point *y, pw_idx i)
-{
-  size_t l = (size_t)a->ld, p = (size_t)i;
-  pw_t6_store(y->stress, a->stress + p, l);
-  a->state[p] = y->void_ratio;
-  if (h->intergranular) {
-    pw_t6_store(y->delta, a->state + DELTA * l + p, l);
-    a->state[SUBSTEP * l + p] = y->substep;
-  }
-}
-
 static void tangent_of(const pw_hypo *h, const pw_stress_args *a, const pw_hypo_point *start,
                        const pw_hypo_point *end, const pw_hypo_path *path, pw_idx i)
 {
@@ -176,11 +146,11 @@ static pw_status update_point(const pw_hypo *h, pw_stress_args *a, bool plane, p
 {
   pw_hypo_path path;
   pw_real modulus = 0.0;
-  pw_hypo_point start = load(h, a, plane, i), end = start;
+  pw_hypo_point start = pw_hypo_read(h, a, plane, i), end = start;
   pw_status s = pw_hypo_integrate(h, pw_t6_load(a->dstrain + i, (size_t)a->ldi), a->dvol[i], &end,
                                   a->tangent ? &path : NULL, a->counts, &modulus);
   if (s == PW_OK) {
-    store(h, a, &end, i);
+    pw_hypo_write(h, a, &end, i);
   } else { /* the point keeps its state: its wave speed is that of the start */
     pw_hypo_rates r;
     pw_hypo_evaluate(h, &start, (pw_t6){0}, &r);
@@ -203,6 +173,7 @@ static pw_status update(const pw_real *param, pw_stress_args *a)
   bool several = !a->tangent && a->n <= PW_CHUNK;
   if (several) {
     pw_hypo_advance_smooth(&h, plane, a, done);
+    pw_hypo_advance_rest(&h, plane, a, done);
   }
   a->bad = -1;
   for (pw_idx i = 0; i < a->n; i++) {

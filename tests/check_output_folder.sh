@@ -40,6 +40,21 @@ expect_absent $run/pictures/old.png
 [ -e $run/notes.txt ] || fail "--force removed a file that is not a run's"
 expect_same $run/checkpoint.h5 checkpoint.before
 
+# Two runs do not write to one folder at the same time.
+"$program" run "$scene" $plain --set time.end_s=1000 --out busy >/dev/null 2>&1 &
+pid=$!
+for ((i = 0; i < 200; i++)); do
+  [ -e busy/checkpoint.h5 ] && break
+  sleep 0.05
+done
+for mode in --resume --force; do
+  expect_exit 1 "$program" run "$scene" $plain --set time.end_s=1000 --out busy $mode
+  expect_text stderr 'another run is at work in busy'
+done
+kill -9 $pid
+wait $pid 2>/dev/null || true
+expect_exit 0 "$program" run "$scene" $plain --out busy --force
+
 # A file called scene.yaml gives its folder's name.
 mkdir my_case
 cp "$scene" my_case/scene.yaml

@@ -32,6 +32,8 @@ static inline void test_add_contact(pw_scene *scene, test_contact kind, int mast
     p->master = master;
     p->slave = slave;
     p->friction = friction;
+    p->require_compression = true;
+    p->normal = PW_NORMAL_MASTER;
   }
 }
 
@@ -54,6 +56,37 @@ static inline void test_hold(pw_scene *scene, int body)
   pw_prescribed_motion_param *p = pw_scene_add_effect(scene, "prescribed_motion");
   assert_non_null(p);
   p->body = body;
+}
+
+/** An elastic punch that falls on an elastic block from @p height; @p kind TEST_CONTACTS: without
+ *  contact. Far apart the penalty's lines have no mass. */
+static inline void test_drop(pw_scene *s, int kind, int geometry, pw_real height)
+{
+  pw_scene_default(s);
+  s->geometry = geometry;
+  s->method.block_elements = 12;
+  test_grid(s, (pw_real[]){0.0, 2.0, 0.0, 2.5}, 0.125);
+  int soft = test_neo_hookean(s, 1e5, 5e4, 1500.0), stiff = test_elastic(s, 1e7, 0.2, 2500.0);
+  pw_real left = geometry == PW_AXI ? 0.0 : 0.5;
+  test_rectangle(s, soft, (pw_real[]){0.0, 2.0, 0.0, 1.0}, 0.0625);
+  test_rectangle(s, stiff, (pw_real[]){left, left + 0.5, 1.0 + height, 1.75 + height}, 0.0625);
+  s->body[1].velocity_m_s[1] = -2.0;
+  pw_gravity_param *gravity = pw_scene_add_effect(s, "gravity");
+  gravity->acceleration_m_s2 = 10.0;
+  if (kind < TEST_CONTACTS) {
+    test_add_contact(s, kind, 1, 0, 0.4, 2e7, 0.0625);
+    if (kind == TEST_PENALTY) {
+      pw_contact_penalty_param *p = (void *)pw_scene_find_effect(s, "contact_penalty");
+      p->thickness_m = height > 0.1 ? 0.0 : 0.001;
+    }
+  }
+  for (int side = PW_SIDE_BOTTOM; side <= PW_SIDE_RIGHT; side++) {
+    pw_boundary_param *b = pw_scene_add_effect(s, "boundary");
+    b->side = side;
+    b->fix_x = true;
+    b->fix_y = side == PW_SIDE_BOTTOM;
+    b->body = -1;
+  }
 }
 
 /** Mass, momentum along x and y, centre x and y of a body, plain sums over its points. */

@@ -21,7 +21,7 @@ static const pw_key keys[] = {
   {"slave", PW_KEY_BODY, AT(slave), 0, 0, NULL, NULL, NULL,
    "the other body: soil, cylinder; further bodies share its velocity field"},
   {"friction", PW_KEY_REAL, AT(friction), 0, 1e6, NULL, NULL, NULL, "Coulomb's coefficient"},
-  {"normal", PW_KEY_CHOICE, AT(normal), 0, 0, "average", "average|master|slave", NULL,
+  {"normal", PW_KEY_CHOICE, AT(normal), 0, 0, "master", "average|master|slave", NULL,
    "whose surface gives the direction of contact; average: both, weighted by area"},
   {"require_compression", PW_KEY_BOOL, AT(require_compression), 0, 0, "true", NULL, NULL,
    "contact only where the normal stress of the bodies is not tensile"},
@@ -36,7 +36,8 @@ typedef struct window {
 /* A node with mass of both bodies. */
 typedef struct contact_node {
   pw_idx node;
-  bool touching;      /* in the pass just made */
+  bool touching;      /* in this step */
+  bool stuck;         /* friction holds it */
   pw_real impulse[2]; /* on the master; N s (per metre or radian) */
   pw_real loss;       /* energy lost, when slot FORCE holds v(n); J (likewise) */
 } contact_node;
@@ -214,14 +215,20 @@ static bool contact_normal(const pw_sim *sim, const frictional *c, const side *s
   return !c->param->require_compression || stress <= 0.0;
 }
 
-/* Normal impulse that ends the approach, and the tangential one that friction can give. */
+/* Normal impulse that ends the approach, and the tangential one that friction can give.
+ *
+ * Remapped velocities (MUSL) move the points and strain them, but their correction reaches no
+ * momentum. Were it one-sided, as for the velocities themselves, each wave through a body at rest
+ * would lift its surface in one half and hold it in the other: the body climbs and the wave grows.
+ * So nodes that touch in the step keep together, and stuck ones stuck, in the remapped field. */
 static void correct_node(const pw_sim *sim, const frictional *c, const side *s, contact_node *at)
 {
   const int slot = sim->node_slot;
   pw_real *a = s[0].rec + (pw_off)at->node * PW_NODE, *b = s[1].rec + (pw_off)at->node * PW_NODE;
   pw_real n[2], d[2], wa = s[0].given ? 0.0 : 1.0 / a[PW_NODE_MASS];
   pw_real wb = s[1].given ? 0.0 : 1.0 / b[PW_NODE_MASS];
-  at->touching = false;
+  const bool held = slot == PW_NODE_REMAP && at->touching, stuck = held && at->stuck;
+  at->touching = held;
   at->impulse[0] = at->impulse[1] = at->loss = 0.0;
   if (wa + wb <= 0.0 || !contact_normal(sim, c, s, at->node, n)) {
     return;
@@ -230,11 +237,12 @@ static void correct_node(const pw_sim *sim, const frictional *c, const side *s, 
     d[i] = (s[0].given ? s[0].v[i] : a[slot + i]) - (s[1].given ? s[1].v[i] : b[slot + i]);
   }
   pw_real approach = d[0] * n[0] + d[1] * n[1], along = -d[0] * n[1] + d[1] * n[0];
-  if (approach <= 0.0) {
+  if (approach <= 0.0 && !held) {
     return;
   }
   pw_real reduced = 1.0 / (wa + wb), normal = reduced * approach, stick = reduced * fabs(along);
-  pw_real tangential = copysign(pw_min(c->param->friction * normal, stick), along);
+  pw_real cap = stuck ? stick : c->param->friction * pw_max(normal, 0.0);
+  pw_real tangential = copysign(pw_min(cap, stick), along);
   for (int i = 0; i < 2; i++) {
     pw_real j = normal * n[i] + tangential * (i == 0 ? -n[1] : n[0]);
     a[slot + i] -= j / a[PW_NODE_MASS];
@@ -246,6 +254,7 @@ static void correct_node(const pw_sim *sim, const frictional *c, const side *s, 
     at->loss += j * 0.5 * (start + d[i] - (wa + wb) * j);
   }
   at->touching = true;
+  at->stuck = cap >= stick;
 }
 
 static void correct(const pw_sim *sim, const frictional *c)

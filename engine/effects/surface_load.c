@@ -36,7 +36,7 @@ static void bounding_box(const pw_domains *d, int b, pw_real *box)
     for (int c = 0; c < 4 && d->body[i] == b; c++) {
       pw_real x[2];
       initial_corner(d, i, c, x);
-      for (int a = 0; a < 2; a++) {
+      for (pw_off a = 0; a < 2; a++) {
         box[2 * a] = pw_min(box[2 * a], x[a]);
         box[2 * a + 1] = pw_max(box[2 * a + 1], x[a]);
       }
@@ -185,7 +185,7 @@ pw_real pw_surface_load_apply(pw_sim *sim, pw_surface_load *load, pw_real pressu
     pw_real force = load->share * pressure * edge_ends(sim, load, e, end[0], end[1]);
     pw_idx *node = load->node + (pw_off)e * PW_EDGE_NODES;
     pw_real *f = load->force + (pw_off)e * PW_EDGE_NODES;
-    for (int k = 0; k < 2; k++) {
+    for (pw_off k = 0; k < 2; k++) {
       /* Integral of r times the edge's linear shape function of this end. */
       pw_real r = (2.0 * end[k][0] + end[1 - k][0]) / 6.0;
       pw_real part = force * (sim->scene.geometry == PW_AXI ? pw_max(r, 0.0) : 0.5);
