@@ -81,13 +81,30 @@ void pw_interface_set_mass(pw_interface *line, pw_real surface_density)
   }
 }
 
+/* Cell along one axis and place in it, 0..1; outside the grid: its edge. */
+static inline pw_idx cell_of(pw_real x, pw_real origin, pw_real inv, pw_idx cells, pw_real *place)
+{
+  pw_real g = pw_min(pw_max((x - origin) * inv, 0.0), (pw_real)cells);
+  pw_idx k = (pw_idx)g;
+  k = k < cells ? k : cells - 1;
+  *place = g - (pw_real)k;
+  return k;
+}
+
 void pw_interface_locate(pw_interface *line, const pw_mesh *mesh)
 {
+  const pw_real inv = 1.0 / mesh->cell;
   line->row = mesh->nodes[0];
   for (pw_idx k = 0; k < line->n; k++) {
-    pw_idx node[4];
-    pw_mesh_shape(mesh, line->node[k].x, node, line->node[k].shape);
-    line->node[k].node = node[0];
+    pw_interface_node *n = &line->node[k];
+    pw_real a, b;
+    pw_idx i = cell_of(n->x[0], mesh->origin[0], inv, mesh->cells[0], &a);
+    pw_idx j = cell_of(n->x[1], mesh->origin[1], inv, mesh->cells[1], &b);
+    n->node = j * mesh->nodes[0] + i;
+    n->shape[0] = (1.0 - a) * (1.0 - b);
+    n->shape[1] = a * (1.0 - b);
+    n->shape[2] = (1.0 - a) * b;
+    n->shape[3] = a * b;
   }
 }
 
@@ -125,6 +142,13 @@ void pw_interface_remap(const pw_interface *line, pw_real *rec)
 static void set_weights(const pw_real *mass, pw_real cut_off, pw_interface_node *a)
 {
   pw_real largest = pw_max(pw_max(mass[0], mass[1]), pw_max(mass[2], mass[3]));
+  pw_real smallest = pw_min(pw_min(mass[0], mass[1]), pw_min(mass[2], mass[3]));
+  if (smallest > cut_off && smallest >= FADE * largest) { /* inside the body */
+    for (int j = 0; j < 4; j++) {
+      a->weight[j] = a->shape[j];
+    }
+    return;
+  }
   pw_real fade = 1.0 / pw_max(FADE * largest, cut_off), sum = 0.0, whole = 0.0;
   for (int j = 0; j < 4; j++) {
     pw_real active = mass[j] > cut_off ? 1.0 : 0.0;

@@ -112,8 +112,15 @@ static bool merge(pw_interface *line, pw_idx k, pw_real longest)
 
 void pw_interface_refine(pw_interface *line, const pw_refine_rule *rule, pw_refine_counts *counts)
 {
+  const pw_real longest2 = rule->longest * rule->longest;
+  const pw_real shortest2 = rule->shortest * rule->shortest;
   for (pw_idx k = 0; k < pw_interface_segments(line); k++) {
-    pw_real l = distance(&line->node[k], &line->node[pw_interface_next(line, k)]);
+    const pw_real *a = line->node[k].x, *b = line->node[pw_interface_next(line, k)].x;
+    pw_real dx = b[0] - a[0], dy = b[1] - a[1], l2 = dx * dx + dy * dy;
+    if (l2 <= longest2 && l2 >= shortest2) {
+      continue;
+    }
+    pw_real l = sqrt(l2);
     if (l > rule->longest && line->n < line->capacity) {
       split(line, k, l);
       counts->splits++;

@@ -25,8 +25,8 @@ static const char help_program[] =
     "  --help             this text\n"
     "\n"
     "Examples:\n"
-    "  pilewright check cases/hammered_pile/scene.yaml\n"
-    "  pilewright run cases/hammered_pile/scene.yaml --threads 2\n"
+    "  pilewright check cases/hammered_pile/frictional.yaml\n"
+    "  pilewright run cases/hammered_pile/frictional.yaml --threads 2\n"
     "  pilewright run my_pile.yaml --set hammer.count=40 --out out/forty_blows\n" EXIT_STATUS;
 
 static const char help_run[] =
@@ -54,7 +54,7 @@ static const char help_run[] =
     "OMP_PLACES to have it otherwise.\n"
     "\n"
     "Examples:\n"
-    "  pilewright run cases/bar_wave/scene.yaml\n"
+    "  pilewright run cases/hammered_pile/penalty.yaml --threads 2\n"
     "  pilewright run pile.yaml --set grid.cell_m=0.25 --set time.end_s=2 --out out/coarse\n"
     "  pilewright run pile.yaml --out out/coarse --resume\n" EXIT_STATUS;
 

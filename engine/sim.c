@@ -321,7 +321,9 @@ pw_status pw_sim_step(pw_sim *sim, pw_real dt_limit)
   if (sim->dt_contact > 0.0) {
     sim->dt = pw_min(sim->dt, sim->dt_contact);
   }
-  if (dt_limit > 0.0) {
+  if (dt_limit > 0.0 && sim->dt < dt_limit && 2.0 * sim->dt > dt_limit) {
+    sim->dt = 0.5 * dt_limit; /* two even steps rather than a full one and a sliver */
+  } else if (dt_limit > 0.0) {
     sim->dt = pw_min(sim->dt, dt_limit);
   }
   pw_status status = pw_step_explicit(sim);

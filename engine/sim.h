@@ -64,7 +64,8 @@ pw_status pw_sim_create(const pw_scene *scene, int threads, pw_sim **out);
 void pw_sim_destroy(pw_sim **sim);
 
 /**
- * @brief One step of at most @p dt_limit seconds (0: no limit besides the stable step).
+ * @brief One step of at most @p dt_limit seconds (0: no limit besides the stable step); what is left
+ *        to the limit is divided evenly when less than two steps remain.
  * @return PW_OK; PW_RETRY_* or PW_ERR_POINT_LOST with point, position, material, step and time in
  *         the error text: the state is then that of a failed step and not to be continued.
  */

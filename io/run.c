@@ -238,7 +238,6 @@ static pw_exit execute(run *r)
   if (status == PW_ERR_INTERRUPTED) {
     return complain(r, PW_EXIT_USAGE, status);
   }
-  pw_run_signals_catch();
   if (status == PW_OK) {
     status = open_outputs(r);
   }
@@ -277,6 +276,7 @@ pw_exit pw_run(const pw_run_options *options, FILE *out, FILE *err)
   }
   if (code == PW_EXIT_FINISHED) {
     print_start(r);
+    pw_run_signals_catch();
     code = execute(r);
     pw_run_signals_restore();
   }

@@ -196,14 +196,29 @@ static bool correction(const pw_element *trial, const pw_element_step *step, con
   return true;
 }
 
+/** First guess of the increment: the last one, scaled to the strains prescribed now. */
+static void predict(const pw_element *el, const pw_element_step *step, pw_real *de)
+{
+  pw_real along = 0.0, size = 0.0;
+  for (int c = 0; c < 6; c++) {
+    if (step->control[c] == PW_CONTROL_STRAIN) {
+      along += step->value[c] * el->last[c];
+      size += el->last[c] * el->last[c];
+    }
+  }
+  pw_real ratio = size > 0.0 ? along / size : 0.0;
+  ratio = ratio > 0.0 && ratio < 10.0 ? ratio : 0.0; /* a turn: no guess */
+  for (int c = 0; c < 6; c++) {
+    de[c] = step->control[c] == PW_CONTROL_STRAIN ? step->value[c] : ratio * el->last[c];
+  }
+}
+
 /** One piece of a step by Newton's method with halved corrections. */
 static pw_status newton(pw_element *el, const pw_element_step *step)
 {
   pw_real de[6], next_de[6], change[6] = {0}, tangent[36], next_tangent[36];
   pw_element trial = *el;
-  for (int c = 0; c < 6; c++) {
-    de[c] = step->control[c] == PW_CONTROL_STRAIN ? step->value[c] : 0.0;
-  }
+  predict(el, step, de);
   PW_TRY(pw_element_move(&trial, de, step->spin, tangent));
   pw_real miss = mismatch(&trial, step);
   for (int it = 0; it < ITERATIONS && miss > el->tolerance; it++) {
@@ -233,6 +248,7 @@ static pw_status newton(pw_element *el, const pw_element_step *step)
     return PW_RETRY_DIVERGED;
   }
   *el = trial;
+  memcpy(el->last, de, sizeof de);
   return PW_OK;
 }
 

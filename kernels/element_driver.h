@@ -25,6 +25,7 @@ typedef struct pw_element {
   pw_real density;           /**< now; kg/m3 */
   pw_real wave_speed;        /**< after the last move; m/s */
   pw_material_counts counts; /**< of accepted moves */
+  pw_real last[6];           /**< strain increment of the last step under mixed control; - */
   pw_real tolerance;         /**< of a prescribed stress, relative to |stress| + 1 Pa */
 } pw_element;
 

@@ -41,6 +41,8 @@ void pw_hypo_derive(const pw_real *param, pw_hypo *h)
   h->x_limit = (9.0 - sin_l * sin_l) / (1.0 - sin_l * sin_l);
   h->max_substeps = (int)param[PW_HYPO_MAX_SUBSTEPS];
   h->intergranular = param[PW_HYPO_INTERGRANULAR] > 0.5;
+  bool unit = beta == 1.0 && (h->chi == 1.0 || !h->intergranular);
+  h->form = (h->intergranular ? PW_HYPO_WITH : 0) + (unit ? PW_HYPO_UNIT : 0);
   h->speed_linear = h->intergranular ? 1.1 * h->m_r : 1.0;
   h->speed_n = h->intergranular ? 0.0 : 1.0;
 }
@@ -51,7 +53,7 @@ void pw_hypo_evaluate(const pw_hypo *h, const pw_hypo_point *p, pw_t6 d, pw_hypo
   pw_hypo_slope k =
       pw_hypo_slope_of(h, shifted, p->delta, p->void_ratio, d, pw_t6_norm(d), h->intergranular);
   pw_hypo_shape g = pw_hypo_shape_of(shifted);
-  pw_hypo_factors c = pw_hypo_factors_of(h, &g, p->void_ratio);
+  pw_hypo_factors c = pw_hypo_factors_of(h, &g, p->void_ratio, false);
   pw_real q = -g.trace * h->inv_h_s;
   pw_real inv_b = exp(pow(q, h->n));
   pw_real e0 = p->void_ratio * inv_b;

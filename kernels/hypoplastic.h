@@ -59,6 +59,9 @@ enum { PW_HYPO_STATE_VOID_RATIO, PW_HYPO_STATE_DELTA, PW_HYPO_STATE_SUBSTEP = 7 
 /** Largest max_substeps a scene may ask for. */
 enum { PW_HYPO_SUBSTEP_LIMIT = 1000, PW_HYPO_PATH_STEPS = PW_HYPO_SUBSTEP_LIMIT + 8 };
 
+/** Forms of the rates: with intergranular strain; with beta = chi = 1, which saves two powers. */
+enum { PW_HYPO_WITH = 1, PW_HYPO_UNIT = 2, PW_HYPO_FORMS = 4 };
+
 /** What follows from a parameter set alone; made once per batch. */
 typedef struct pw_hypo {
   pw_real p_t, inv_h_s, n, alpha, beta;
@@ -68,6 +71,7 @@ typedef struct pw_hypo {
   pw_real tolerance, p_min, x_limit; /**< x_limit: largest I1 I2 / I3 */
   pw_real speed_linear, speed_n;     /**< parts of L and N in the modulus of the wave speed */
   int max_substeps;
+  int form; /**< of the rates: PW_HYPO_WITH + PW_HYPO_UNIT */
   bool intergranular;
 } pw_hypo;
 

@@ -17,38 +17,31 @@ typedef struct group {
   pw_real void_mid[LANES], void_end[LANES], modulus[LANES], error[LANES];
 } group;
 
-static void inner_with(const pw_hypo *h, const pw_hypo_stage *s)
-{
-  pw_hypo_stage_lanes(h, s, LANES, true, false);
-}
-
-static void last_with(const pw_hypo *h, const pw_hypo_stage *s)
-{
-  pw_hypo_stage_lanes(h, s, LANES, true, true);
-}
-
-static void inner_without(const pw_hypo *h, const pw_hypo_stage *s)
-{
-  pw_hypo_stage_lanes(h, s, LANES, false, false);
-}
-
-static void last_without(const pw_hypo *h, const pw_hypo_stage *s)
-{
-  pw_hypo_stage_lanes(h, s, LANES, false, true);
-}
-
-static const pw_hypo_stage_fn with[2] = {inner_with, last_with};
-static const pw_hypo_stage_fn without[2] = {inner_without, last_without};
+PW_HYPO_STAGES(stages, LANES);
 
 static void copy_rows(const pw_real *from, size_t ld, int rows, pw_idx first, int n, pw_real *to)
 {
   for (int c = 0; c < rows; c++) {
     const pw_real *row = from + (size_t)c * ld + (size_t)first;
-    for (int i = 0; i < n; i++) {
-      to[c * LANES + i] = row[i];
+    if (n == LANES) {
+      memcpy(to + c * LANES, row, LANES * sizeof *to);
+      continue;
     }
-    for (int i = n; i < LANES; i++) {
-      to[c * LANES + i] = row[n - 1];
+    for (int i = 0; i < LANES; i++) {
+      to[c * LANES + i] = row[i < n ? i : n - 1];
+    }
+  }
+}
+
+/** Replace rows by those of @p from where @p stands is positive. */
+PW_INLINE void merge_rows(pw_real (*from)[LANES], const pw_real *stands, int n, size_t ld,
+                          pw_real *to)
+{
+  for (int c = 0; c < 6; c++) {
+    pw_real *row = to + (size_t)c * ld;
+#pragma omp simd
+    for (int i = 0; i < n; i++) {
+      row[i] = stands[i] > 0.0 ? from[c][i] : row[i];
     }
   }
 }
@@ -76,9 +69,9 @@ static void rotate(const pw_hypo *h, pw_real spin[3][LANES], bool plane, group *
   }
 }
 
-/** Read @p n points from @p first on and rotate them. */
-static void gather(const pw_hypo *h, const pw_stress_args *a, bool plane, pw_idx first, int n,
-                   group *g)
+/** Read @p n points from @p first on and rotate them; how many lanes one substep may do for. */
+static pw_real gather(const pw_hypo *h, const pw_stress_args *a, bool plane, pw_idx first, int n,
+                      group *g)
 {
   size_t ld = (size_t)a->ld, ldi = (size_t)a->ldi;
   pw_real spin[3][LANES], substep[LANES];
@@ -97,7 +90,8 @@ static void gather(const pw_hypo *h, const pw_stress_args *a, bool plane, pw_idx
     memset(g->at_delta, 0, sizeof g->at_delta);
   }
   rotate(h, spin, plane, g);
-#pragma omp simd
+  pw_real count = 0.0;
+#pragma omp simd reduction(+ : count)
   for (int i = 0; i < LANES; i++) {
     pw_t6 de = pw_t6_load(&g->de[0][i], LANES);
     pw_real size2 = pw_t6_dot(de, de), turn = -pw_t6_dot(pw_t6_load(&g->delta[0][i], LANES), de);
@@ -109,38 +103,35 @@ static void gather(const pw_hypo *h, const pw_stress_args *a, bool plane, pw_idx
     g->void_end[i] = specific * g->dvol[i] - 1.0;
     pw_real voids = g->void_end[i] > 1e-9 ? straight : 0.0;
     g->able[i] = substep[i] >= 1.0 ? voids : 0.0;
-  }
-}
-
-/** Write the lanes that stand. */
-static int scatter(const pw_hypo *h, const pw_stress_args *a, const group *g, pw_idx first, int n,
-                   pw_real *done)
-{
-  size_t ld = (size_t)a->ld;
-  int count = 0;
-  for (int i = 0; i < n; i++) {
-    done[first + i] = g->error[i] <= h->tolerance ? g->able[i] : 0.0;
-    count += done[first + i] > 0.0 ? 1 : 0;
-  }
-  const pw_real *stands = done + first;
-  for (int c = 0; c < 6; c++) {
-    pw_real *row = a->stress + (size_t)c * ld + (size_t)first, shift = c < 3 ? h->p_t : 0.0;
-    for (int i = 0; i < n; i++) {
-      row[i] = stands[i] > 0.0 ? g->at[c][i] + shift : row[i];
-    }
-  }
-  for (int c = 0; h->intergranular && c < 6; c++) {
-    pw_real *row = a->state + (size_t)(PW_HYPO_STATE_DELTA + c) * ld + (size_t)first;
-    for (int i = 0; i < n; i++) {
-      row[i] = stands[i] > 0.0 ? g->at_delta[c][i] : row[i];
-    }
-  }
-  pw_real *row = a->state + first;
-  for (int i = 0; i < n; i++) {
-    row[i] = stands[i] > 0.0 ? g->void_end[i] : row[i];
-    a->wave_speed[first + i] = sqrt(g->modulus[i] / a->density[first + i]);
+    count += g->able[i];
   }
   return count;
+}
+
+/** Write the lanes that stand; how many. */
+PW_INLINE int scatter(const pw_hypo *h, const pw_stress_args *a, group *g, pw_idx first, int n,
+                      pw_real *done)
+{
+  const size_t ld = (size_t)a->ld;
+  const pw_real tolerance = h->tolerance, p_t = h->p_t;
+  pw_real count = 0.0;
+#pragma omp simd reduction(+ : count)
+  for (int i = 0; i < n; i++) {
+    pw_real stands = g->error[i] <= tolerance ? g->able[i] : 0.0;
+    done[i] = stands;
+    count += stands;
+    g->at[0][i] += p_t;
+    g->at[1][i] += p_t;
+    g->at[2][i] += p_t;
+    pw_real void_ratio = a->state[first + i];
+    a->state[first + i] = stands > 0.0 ? g->void_end[i] : void_ratio;
+    a->wave_speed[first + i] = sqrt(g->modulus[i] / a->density[first + i]);
+  }
+  merge_rows(g->at, done, n, ld, a->stress + first);
+  if (h->intergranular) {
+    merge_rows(g->at_delta, done, n, ld, a->state + PW_HYPO_STATE_DELTA * ld + first);
+  }
+  return (int)count;
 }
 
 void pw_hypo_advance_smooth(const pw_hypo *h, bool plane, const pw_stress_args *a, pw_real *done)
@@ -161,9 +152,13 @@ void pw_hypo_advance_smooth(const pw_hypo *h, bool plane, const pw_stress_args *
                              g.error};
   for (pw_idx first = 0; first < a->n; first += LANES) {
     int n = a->n - first < LANES ? (int)(a->n - first) : LANES;
-    gather(h, a, plane, first, n, &g);
-    pw_hypo_substep_lanes(h, &s, LANES, h->intergranular ? with : without);
-    int count = scatter(h, a, &g, first, n, done);
+    if (gather(h, a, plane, first, n, &g) == 0.0) {
+      memset(done + first, 0, (size_t)n * sizeof *done);
+      continue;
+    }
+    pw_hypo_substep_lanes(h, &s, LANES, stages[h->form]);
+    int count = n == LANES ? scatter(h, a, &g, first, LANES, done + first)
+                           : scatter(h, a, &g, first, n, done + first);
     if (a->counts) {
       a->counts->substeps += count;
       a->counts->rhs += 3 * count;

@@ -22,26 +22,30 @@ static pw_real void_ratio_at(const run *r, pw_real t)
   return r->specific * pw_exp(t * r->log_dvol) - 1.0;
 }
 
-static pw_hypo_slope slope_with(const run *r, pw_t6 stress, pw_t6 delta, pw_real e)
-{
-  return pw_hypo_slope_of(r->h, stress, delta, e, r->de, r->size, true);
-}
-
-static pw_hypo_slope slope_without(const run *r, pw_t6 stress, pw_t6 delta, pw_real e)
-{
-  return pw_hypo_slope_of(r->h, stress, delta, e, r->de, r->size, false);
-}
+/** Rates in one of their forms, each compiled on its own. */
+#define RATES(form)                                                                                \
+  static pw_hypo_slope rates_##form(const run *r, pw_t6 stress, pw_t6 delta, pw_real e)            \
+  {                                                                                                \
+    return pw_hypo_slope_of(r->h, stress, delta, e, r->de, r->size, form);                         \
+  }
+RATES(0)
+RATES(1)
+RATES(2)
+RATES(3)
+static pw_hypo_slope (*const rates[PW_HYPO_FORMS])(const run *r, pw_t6 stress, pw_t6 delta,
+                                                   pw_real e) = {rates_0, rates_1, rates_2,
+                                                                 rates_3};
 
 /** Rates at a stage; a stress beyond the limits is moved back first. */
 static pw_hypo_slope stage(run *r, pw_t6 *stress, pw_t6 delta, pw_real t)
 {
-  bool with = r->h->intergranular && !r->swept;
+  int form = r->swept ? r->h->form & ~PW_HYPO_WITH : r->h->form;
   pw_real e = void_ratio_at(r, t);
   r->counts.rhs++;
-  pw_hypo_slope k = (with ? slope_with : slope_without)(r, *stress, delta, e);
+  pw_hypo_slope k = rates[form](r, *stress, delta, e);
   if (!(k.inside > 0.0)) {
     *stress = pw_hypo_limit(r->h, *stress);
-    k = (with ? slope_with : slope_without)(r, *stress, delta, e);
+    k = rates[form](r, *stress, delta, e);
   }
   if (r->swept) {
     k.delta = (pw_t6){0};

@@ -23,8 +23,8 @@ typedef struct pw_hypo_stage {
 } pw_hypo_stage;
 
 /** @brief Rates of @p n lanes. */
-PW_INLINE void pw_hypo_stage_lanes(const pw_hypo *hp, const pw_hypo_stage *stage, int n,
-                                   bool intergranular, bool last)
+PW_INLINE void pw_hypo_stage_lanes(const pw_hypo *hp, const pw_hypo_stage *stage, int n, int form,
+                                   bool last)
 {
   const pw_hypo h = *hp;
   const pw_hypo_stage a = *stage;
@@ -33,7 +33,7 @@ PW_INLINE void pw_hypo_stage_lanes(const pw_hypo *hp, const pw_hypo_stage *stage
   for (int i = 0; i < n; i++) {
     pw_hypo_slope s =
         pw_hypo_slope_of(&h, pw_t6_load(a.stress + i, ld), pw_t6_load(a.delta + i, ld),
-                         a.void_ratio[i], pw_t6_load(a.de + i, ld), a.size[i], intergranular);
+                         a.void_ratio[i], pw_t6_load(a.de + i, ld), a.size[i], form);
     pw_t6_store(s.stress, a.k + i, ld);
     pw_t6_store(s.delta, a.d + i, ld);
     a.able[i] *= s.inside;
@@ -108,8 +108,31 @@ PW_INLINE void pw_hypo_combine(const pw_hypo *hp, const pw_hypo_substep *substep
 /** Rates of the lanes of one stage; instances of pw_hypo_stage_lanes(). */
 typedef void (*pw_hypo_stage_fn)(const pw_hypo *h, const pw_hypo_stage *stage);
 
+/**
+ * Define the table `name`[form][last] of the instances for @p n lanes, one for each pair of
+ * literals, so that their loops hold no branches.
+ */
+#define PW_HYPO_STAGE(form, last, n)                                                               \
+  static void stage_##form##_##last(const pw_hypo *h, const pw_hypo_stage *s)                      \
+  {                                                                                                \
+    pw_hypo_stage_lanes(h, s, n, form, last);                                                      \
+  }
+#define PW_HYPO_STAGES(name, n)                                                                    \
+  PW_HYPO_STAGE(0, 0, n)                                                                           \
+  PW_HYPO_STAGE(0, 1, n)                                                                           \
+  PW_HYPO_STAGE(1, 0, n)                                                                           \
+  PW_HYPO_STAGE(1, 1, n)                                                                           \
+  PW_HYPO_STAGE(2, 0, n)                                                                           \
+  PW_HYPO_STAGE(2, 1, n)                                                                           \
+  PW_HYPO_STAGE(3, 0, n)                                                                           \
+  PW_HYPO_STAGE(3, 1, n)                                                                           \
+  static const pw_hypo_stage_fn name[PW_HYPO_FORMS][2] = {{stage_0_0, stage_0_1},                  \
+                                                          {stage_1_0, stage_1_1},                  \
+                                                          {stage_2_0, stage_2_1},                  \
+                                                          {stage_3_0, stage_3_1}}
+
 /** @brief One substep of @p n lanes.
- *  @param[in] rates of the first two stages, of the last stage */
+ *  @param[in] rates row h->form of the table of instances */
 PW_INLINE void pw_hypo_substep_lanes(const pw_hypo *h, const pw_hypo_substep *s, int n,
                                      const pw_hypo_stage_fn rates[2])
 {

@@ -81,7 +81,7 @@ PW_INLINE pw_real pw_hypo_inside_stress(const pw_hypo *h, pw_t6 shifted)
 }
 
 PW_INLINE pw_hypo_factors pw_hypo_factors_of(const pw_hypo *h, const pw_hypo_shape *g,
-                                             pw_real void_ratio)
+                                             pw_real void_ratio, bool unit)
 {
   pw_real q = -g->trace * h->inv_h_s;
   q = q > 1e-30 ? q : 1e-30;
@@ -94,7 +94,8 @@ PW_INLINE pw_hypo_factors pw_hypo_factors_of(const pw_hypo *h, const pw_hypo_sha
   e0 = e0 > h->e_i0 ? h->e_i0 : e0;
   pw_real e0_e = e0 < 0.9 * h->e_d0 ? 0.9 * h->e_d0 : e0;
   /* f_b f_e, with (3p/h_s)^(1-n) and (e_c/e)^beta as one power */
-  pw_real power = pw_exp((1.0 - h->n) * log_q + h->beta * (h->log_e_c0 - pw_log(e0_e)));
+  pw_real power = unit ? pw_exp((1.0 - h->n) * log_q) * h->e_c0 / e0_e
+                       : pw_exp((1.0 - h->n) * log_q + h->beta * (h->log_e_c0 - pw_log(e0_e)));
   pw_real fbe = h->k_b * (1.0 + inv_b * h->inv_e_i0) * power;
   pw_real r = (e0 - h->e_d0) * h->inv_e_range;
   pw_real r_power = r > PW_HYPO_R_MIN ? r : PW_HYPO_R_MIN;
@@ -112,24 +113,23 @@ PW_INLINE pw_hypo_factors pw_hypo_factors_of(const pw_hypo *h, const pw_hypo_sha
  * @param[in] shifted        sigma*; Pa
  * @param[in] delta          intergranular strain; unused without it
  * @param[in] d,d_norm       strain rate and its Frobenius norm
- * @param[in] intergranular  h->intergranular, as a literal where the compiler can use it
+ * @param[in] form           h->form, as a literal where the compiler can use it
  */
 PW_INLINE pw_hypo_slope pw_hypo_slope_of(const pw_hypo *h, pw_t6 shifted, pw_t6 delta,
-                                         pw_real void_ratio, pw_t6 d, pw_real d_norm,
-                                         bool intergranular)
+                                         pw_real void_ratio, pw_t6 d, pw_real d_norm, int form)
 {
   pw_hypo_shape g = pw_hypo_shape_of(shifted);
-  pw_hypo_factors k = pw_hypo_factors_of(h, &g, void_ratio);
+  pw_hypo_factors k = pw_hypo_factors_of(h, &g, void_ratio, form & PW_HYPO_UNIT);
   pw_hypo_slope out;
   pw_real along_d = 1.0, along_dir = 0.0, n_part = d_norm; /* of L:D, L:d and N */
   pw_t6 dir = {0};
   pw_real s_dir = 0.0;
   out.delta = d;
-  if (intergranular) {
+  if (form & PW_HYPO_WITH) {
     pw_real dd = pw_t6_dot(delta, delta);
     dd = dd > 1e-200 ? dd : 1e-200;
     pw_real log_rho = 0.5 * pw_log(dd * h->inv_r2);
-    pw_real rho_chi = pw_exp(h->chi * log_rho);
+    pw_real rho_chi = form & PW_HYPO_UNIT ? sqrt(dd * h->inv_r2) : pw_exp(h->chi * log_rho);
     pw_real rho_beta = pw_exp(h->beta_r * log_rho);
     dir = pw_t6_scale(1.0 / sqrt(dd), delta);
     pw_real turn = pw_t6_dot(dir, d); /* d:D */

@@ -21,28 +21,7 @@ typedef struct pool {
   int accepted[LANES], rejected[LANES];
 } pool;
 
-static void inner_with(const pw_hypo *h, const pw_hypo_stage *s)
-{
-  pw_hypo_stage_lanes(h, s, LANES, true, false);
-}
-
-static void last_with(const pw_hypo *h, const pw_hypo_stage *s)
-{
-  pw_hypo_stage_lanes(h, s, LANES, true, true);
-}
-
-static void inner_without(const pw_hypo *h, const pw_hypo_stage *s)
-{
-  pw_hypo_stage_lanes(h, s, LANES, false, false);
-}
-
-static void last_without(const pw_hypo *h, const pw_hypo_stage *s)
-{
-  pw_hypo_stage_lanes(h, s, LANES, false, true);
-}
-
-static const pw_hypo_stage_fn with[2] = {inner_with, last_with};
-static const pw_hypo_stage_fn without[2] = {inner_without, last_without};
+PW_HYPO_STAGES(stages, LANES);
 
 pw_hypo_point pw_hypo_read(const pw_hypo *h, const pw_stress_args *a, bool plane, pw_idx i)
 {
@@ -160,11 +139,12 @@ static void decide(const pw_hypo *hp, pool *g)
     pw_real moved = t + good * step;
     g->t[i] = last > 0.0 ? end : moved;
     g->good[i] = good;
-    pw_t6 stress = pw_t6_load(&g->stress[0][i], LANES), at = pw_t6_load(&g->at[0][i], LANES);
-    pw_t6 delta = pw_t6_load(&g->delta[0][i], LANES);
-    pw_t6 at_delta = pw_t6_load(&g->at_delta[0][i], LANES);
-    pw_t6_store(pw_t6_select(good, at, stress), &g->stress[0][i], LANES);
-    pw_t6_store(pw_t6_select(good, at_delta, delta), &g->delta[0][i], LANES);
+  }
+  for (int c = 0; c < 6; c++) {
+    for (int i = 0; i < LANES; i++) {
+      g->stress[c][i] = g->good[i] > 0.0 ? g->at[c][i] : g->stress[c][i];
+      g->delta[c][i] = g->good[i] > 0.0 ? g->at_delta[c][i] : g->delta[c][i];
+    }
   }
 }
 
@@ -240,7 +220,7 @@ void pw_hypo_advance_rest(const pw_hypo *h, bool plane, const pw_stress_args *a,
   empty(&g);
   while (refill(h, a, plane, done, &next, &g) > 0) {
     prepare(&g);
-    pw_hypo_substep_lanes(h, &s, LANES, h->intergranular ? with : without);
+    pw_hypo_substep_lanes(h, &s, LANES, stages[h->form]);
     decide(h, &g);
     release(h, a, &g, done);
   }

@@ -11,7 +11,7 @@ static void linear_stiffness(const pw_hypo *h, const pw_hypo_point *p, pw_real *
     shifted = pw_hypo_limit(h, shifted);
   }
   pw_hypo_shape g = pw_hypo_shape_of(shifted);
-  pw_hypo_factors k = pw_hypo_factors_of(h, &g, p->void_ratio);
+  pw_hypo_factors k = pw_hypo_factors_of(h, &g, p->void_ratio, false);
   pw_real m = h->intergranular ? h->m_r : 1.0;
   pw_real s[6];
   pw_t6_store(g.s, s, 1);

@@ -72,30 +72,41 @@ PW_INLINE pw_real update_point(pw_real lambda, pw_real mu, const pw_stress_args 
   return good;
 }
 
+/** Advance @p n <= PW_CHUNK points from @p first on; the first failing one, or -1. */
+static pw_idx update_chunk(pw_real lambda, pw_real mu, const pw_stress_args *a, pw_idx first,
+                           pw_idx n)
+{
+  const pw_stress_args arrays = *a;
+  pw_real good[PW_CHUNK], count = 0.0;
+  if (pw_spin_is_plane(a->spin + first, (size_t)a->ldi, n)) {
+#pragma omp simd reduction(+ : count)
+    for (pw_idx i = 0; i < n; i++) {
+      good[i] = update_point(lambda, mu, &arrays, first + i, true);
+      count += good[i];
+    }
+  } else {
+#pragma omp simd reduction(+ : count)
+    for (pw_idx i = 0; i < n; i++) {
+      good[i] = update_point(lambda, mu, &arrays, first + i, false);
+      count += good[i];
+    }
+  }
+  return count == (pw_real)n ? -1 : first + pw_first_zero(good, n);
+}
+
 static pw_status update(const pw_real *param, pw_stress_args *a)
 {
   const pw_real mu = 0.5 * param[YOUNG] / (1.0 + param[POISSON]);
   const pw_real lambda = 2.0 * mu * param[POISSON] / (1.0 - 2.0 * param[POISSON]);
-  const pw_stress_args arrays = *a;
-  const pw_idx n = a->n;
-  pw_idx bad = n;
-  if (pw_spin_is_plane(a->spin, (size_t)a->ldi, n)) {
-#pragma omp simd reduction(min : bad)
-    for (pw_idx i = 0; i < n; i++) {
-      pw_real good = update_point(lambda, mu, &arrays, i, true);
-      bad = good > 0.0 ? bad : (i < bad ? i : bad);
-    }
-  } else {
-#pragma omp simd reduction(min : bad)
-    for (pw_idx i = 0; i < n; i++) {
-      pw_real good = update_point(lambda, mu, &arrays, i, false);
-      bad = good > 0.0 ? bad : (i < bad ? i : bad);
-    }
+  a->bad = -1;
+  for (pw_idx first = 0; first < a->n; first += PW_CHUNK) {
+    pw_idx n = a->n - first < PW_CHUNK ? a->n - first : PW_CHUNK;
+    pw_idx bad = update_chunk(lambda, mu, a, first, n);
+    a->bad = a->bad < 0 ? bad : a->bad;
   }
   if (a->tangent) {
     fill_tangent(lambda, mu, a);
   }
-  a->bad = bad < n ? bad : -1;
   return a->bad < 0 ? PW_OK : PW_RETRY_STRESS;
 }
 

@@ -83,36 +83,49 @@ static void fill_tangent(const pw_real *param, pw_stress_args *a, pw_idx i)
 }
 
 /**
- * J sigma = lambda ln J 1 + mu (b - 1), lambda = K - 2/3 mu.
+ * J sigma = lambda ln J 1 + mu (b - 1), lambda = K - 2/3 mu, of @p n <= PW_CHUNK points from
+ * @p first on; the first failing one, or -1.
  *
  * Wave speed: the acoustic tensor of a direction n is ((lambda + mu - lambda ln J) n n +
  * mu (n.b.n) 1) / J; its largest value is at most (max(0, lambda (1 - ln J) + mu) + mu b_max) / J,
  * reached when n is the direction of the largest stretch.
  */
-static pw_status update(const pw_real *param, pw_stress_args *a)
+static pw_idx update_chunk(const pw_real *param, const pw_stress_args *a, pw_idx first, pw_idx n)
 {
   const pw_real mu = param[SHEAR], lambda = param[BULK] - 2.0 / 3.0 * mu;
   const size_t l = (size_t)a->ld, li = (size_t)a->ldi;
-  const pw_real *left_cg = a->left_cg, *jacobian = a->jac, *rho = a->density;
-  pw_real *stress = a->stress, *speed = a->wave_speed;
-  pw_idx bad = a->n;
-#pragma omp simd reduction(min : bad)
-  for (pw_idx i = 0; i < a->n; i++) {
+  const pw_real *left_cg = a->left_cg + first, *jacobian = a->jac + first;
+  const pw_real *density_now = a->density + first;
+  pw_real *stress = a->stress + first, *speed = a->wave_speed + first;
+  pw_real flag[PW_CHUNK], count = 0.0;
+#pragma omp simd reduction(+ : count)
+  for (pw_idx i = 0; i < n; i++) {
     pw_t6 b = pw_t6_load(left_cg + i, li), old = pw_t6_load(stress + i, l);
     pw_real jac = jacobian[i], inv_j = 1.0 / jac, log_j = pw_log(jac);
     pw_t6 sigma = pw_t6_scale(inv_j, pw_t6_shift(pw_t6_scale(mu, b), lambda * log_j - mu));
     pw_real along = lambda * (1.0 - log_j) + mu;
     pw_real modulus = ((along > 0.0 ? along : 0.0) + mu * largest_stretch(b)) * inv_j;
     pw_real good = jac > 1e-300 ? pw_t6_is_finite(sigma) : 0.0;
-    bad = good > 0.0 ? bad : (i < bad ? i : bad);
     modulus = good > 0.0 ? modulus : lambda + 2.0 * mu;
     pw_t6_store(pw_t6_select(good, sigma, old), stress + i, l);
-    speed[i] = sqrt(modulus / rho[i]);
+    speed[i] = sqrt(modulus / density_now[i]);
+    flag[i] = good;
+    count += good;
+  }
+  return count == (pw_real)n ? -1 : first + pw_first_zero(flag, n);
+}
+
+static pw_status update(const pw_real *param, pw_stress_args *a)
+{
+  a->bad = -1;
+  for (pw_idx first = 0; first < a->n; first += PW_CHUNK) {
+    pw_idx n = a->n - first < PW_CHUNK ? a->n - first : PW_CHUNK;
+    pw_idx bad = update_chunk(param, a, first, n);
+    a->bad = a->bad < 0 ? bad : a->bad;
   }
   for (pw_idx i = 0; a->tangent && i < a->n; i++) {
     fill_tangent(param, a, i);
   }
-  a->bad = bad < a->n ? bad : -1;
   return a->bad < 0 ? PW_OK : PW_RETRY_STRESS;
 }
 

@@ -159,20 +159,20 @@ PW_INLINE pw_t6 pw_t6_rotate(pw_rot r, pw_t6 a)
                  .zx = zx * r.xx + zy * r.xy + zz * r.xz};
 }
 
-/** @brief R a R^T for a spin of xy alone, with which yz and zx of a rotate as a vector. */
+/** @brief R a R^T for a spin of xy alone: the same operations without those on zeros, so that the
+ *  result has the bits of pw_rot_hughes_winget() with pw_t6_rotate(). */
 PW_INLINE pw_t6 pw_t6_rotate_plane(pw_real wxy, pw_t6 a)
 {
-  pw_real f = 1.0 / (1.0 + 0.25 * wxy * wxy);
-  pw_real c = (1.0 - 0.25 * wxy * wxy) * f, s = wxy * f;
-  pw_real half = 0.5 * (a.xx - a.yy), mean = 0.5 * (a.xx + a.yy);
-  pw_real c2 = c * c - s * s, s2 = 2.0 * s * c;
-  pw_real half_new = c2 * half + s2 * a.xy;
-  return (pw_t6){.xx = mean + half_new,
-                 .yy = mean - half_new,
+  pw_real f = 1.0 / (1.0 + 0.25 * (wxy * wxy)), g = 0.5 * f;
+  pw_real c = 1.0 - g * (wxy * wxy), s = f * wxy, r = -f * wxy;
+  pw_real xx = c * a.xx + s * a.xy, xy = c * a.xy + s * a.yy; /* rows of R a */
+  pw_real yx = r * a.xx + c * a.xy, yy = r * a.xy + c * a.yy;
+  return (pw_t6){.xx = xx * c + xy * s,
+                 .yy = yx * r + yy * c,
                  .zz = a.zz,
-                 .xy = c2 * a.xy - s2 * half,
-                 .yz = c * a.yz - s * a.zx,
-                 .zx = c * a.zx + s * a.yz};
+                 .xy = xx * r + xy * c,
+                 .yz = r * a.zx + c * a.yz,
+                 .zx = a.zx * c + a.yz * s};
 }
 
 /** @brief True when the spins yz and zx of all @p n points are exactly zero.
@@ -184,6 +184,16 @@ PW_INLINE bool pw_spin_is_plane(const pw_real *spin, size_t ldi, pw_idx n)
     sum += fabs(spin[ldi + (size_t)i]) + fabs(spin[2 * ldi + (size_t)i]);
   }
   return sum == 0.0;
+}
+
+/** @brief The first of @p n flags that is 0, or n. */
+static inline pw_idx pw_first_zero(const pw_real *flag, pw_idx n)
+{
+  pw_idx i = 0;
+  while (i < n && flag[i] > 0.0) {
+    i++;
+  }
+  return i;
 }
 
 #endif /* PW_KERNELS_TENSOR_H */

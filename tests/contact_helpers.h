@@ -65,16 +65,16 @@ static inline void test_drop(pw_scene *s, int kind, int geometry, pw_real height
   pw_scene_default(s);
   s->geometry = geometry;
   s->method.block_elements = 12;
-  test_grid(s, (pw_real[]){0.0, 2.0, 0.0, 2.5}, 0.125);
+  test_grid(s, (pw_real[]){0.0, 2.0, 0.0, 2.5}, 0.25);
   int soft = test_neo_hookean(s, 1e5, 5e4, 1500.0), stiff = test_elastic(s, 1e7, 0.2, 2500.0);
   pw_real left = geometry == PW_AXI ? 0.0 : 0.5;
-  test_rectangle(s, soft, (pw_real[]){0.0, 2.0, 0.0, 1.0}, 0.0625);
-  test_rectangle(s, stiff, (pw_real[]){left, left + 0.5, 1.0 + height, 1.75 + height}, 0.0625);
-  s->body[1].velocity_m_s[1] = -2.0;
+  test_rectangle(s, soft, (pw_real[]){0.0, 2.0, 0.0, 1.0}, 0.125);
+  test_rectangle(s, stiff, (pw_real[]){left, left + 0.5, 1.0 + height, 1.75 + height}, 0.125);
+  s->body[1].velocity_m_s[1] = -5.0;
   pw_gravity_param *gravity = pw_scene_add_effect(s, "gravity");
   gravity->acceleration_m_s2 = 10.0;
   if (kind < TEST_CONTACTS) {
-    test_add_contact(s, kind, 1, 0, 0.4, 2e7, 0.0625);
+    test_add_contact(s, kind, 1, 0, 0.4, 2e7, 0.125);
     if (kind == TEST_PENALTY) {
       pw_contact_penalty_param *p = (void *)pw_scene_find_effect(s, "contact_penalty");
       p->thickness_m = height > 0.1 ? 0.0 : 0.001;

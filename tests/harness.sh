@@ -13,6 +13,7 @@ export OMP_NUM_THREADS=1 OMP_WAIT_POLICY=passive OMP_PROC_BIND=false
 
 finish() {
   code=$?
+  kill -9 $(jobs -p) 2>/dev/null || true
   chmod -R u+w "$work" 2>/dev/null || true
   rm -rf "$work"
   exit $code

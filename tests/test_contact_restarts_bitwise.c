@@ -38,11 +38,11 @@ static void check(test_contact kind, int geometry)
     p->split_factor = 1.1;
   }
   pw_sim *sim = test_sim(&s, 2);
-  steps(sim, 120);
+  steps(sim, 60);
   assert_ok(pw_restart_write(half, sim));
-  steps(sim, 100);
+  steps(sim, 40);
   assert_ok(pw_restart_write(through, sim));
-  assert_true(pw_contact_tally_of(sim)->pairs > 2);
+  assert_true(pw_contact_tally_of(sim)->pairs > 0);
   if (kind == TEST_PENALTY) {
     const pw_penalty *c = pw_sim_effect_ctx(sim, "contact_penalty");
     assert_true(c->counts.splits > 0);
@@ -51,7 +51,7 @@ static void check(test_contact kind, int geometry)
   sim = test_sim(&s, 1);
   steps(sim, 7); /* nothing of what was there before may stay */
   assert_ok(pw_restart_read(half, sim));
-  steps(sim, 100);
+  steps(sim, 40);
   assert_ok(pw_restart_write(resumed, sim));
   expect_same(through, resumed);
   pw_sim_destroy(&sim);

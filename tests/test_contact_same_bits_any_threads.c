@@ -40,11 +40,11 @@ static void threads_do_not_matter(void **state)
   for (int kind = 0; kind < TEST_CONTACTS; kind++) {
     for (int geometry = PW_PLANE; geometry <= PW_AXI; geometry++) {
       test_drop(&s, kind, geometry, 0.001);
-      pw_sim *one = run(&s, 1, 200);
+      pw_sim *one = run(&s, 1, 100);
       const pw_contact_tally *t = pw_contact_tally_of(one);
-      assert_true(t->pairs > 2 && t->force[PW_REACTION_Y] > 0.0);
+      assert_true(t->impulse[PW_REACTION_Y] > 50.0);
       for (int threads = 2; threads <= 4; threads++) {
-        pw_sim *many = run(&s, threads, 200);
+        pw_sim *many = run(&s, threads, 100);
         assert_true(same_points(one, many));
         assert_memory_equal(t, pw_contact_tally_of(many), sizeof *t);
         pw_sim_destroy(&many);
@@ -61,7 +61,7 @@ static void bodies_apart_do_not_notice(void **state)
   for (int kind = 0; kind < TEST_CONTACTS; kind++) {
     test_drop(&with, kind, PW_PLANE, 0.5);
     test_drop(&without, TEST_CONTACTS, PW_PLANE, 0.5);
-    pw_sim *a = run(&with, 2, 40), *b = run(&without, 2, 40);
+    pw_sim *a = run(&with, 2, 15), *b = run(&without, 2, 15);
     assert_true(same_points(a, b));
     assert_int_equal(pw_contact_tally_of(a)->pairs, 0);
     pw_sim_destroy(&a);

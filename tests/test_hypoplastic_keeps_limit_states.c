@@ -39,7 +39,7 @@ static void critical_state_is_the_cone(void **unused)
     pw_hypo_point at = {.stress = stress_on_cone(p, lode, pi / 6.0)};
     at.void_ratio = h.e_c0 * exp(-pow(3.0 * p * h.inv_h_s, h.n));
     pw_hypo_shape g = pw_hypo_shape_of(at.stress);
-    pw_hypo_factors k = pw_hypo_factors_of(&h, &g, at.void_ratio);
+    pw_hypo_factors k = pw_hypo_factors_of(&h, &g, at.void_ratio, false);
     /* flow: D = -L^-1:N |D| */
     pw_t6 n = pw_t6_scale(k.c_n, pw_t6_shift(pw_t6_scale(2.0, g.s), -1.0 / 3.0));
     double along = k.c2 * pw_t6_dot(g.s, n) / (k.c1 + k.c2 * pw_t6_dot(g.s, g.s));

@@ -27,7 +27,7 @@ static const pw_key keys[] = {
   {"far_field_x_m", PW_KEY_REAL, AT(far_field_x_m), 0, 1e6, "0", NULL, NULL,
    "top points beyond it give the far-field settlement; 0: 0.8 of the soil's right end"},
   {"base_y_m", PW_KEY_REAL, AT(base_y_m), -1e300, 1e6, "-1e300", NULL, NULL,
-   "bottom of the row of cells that gives the base stress; default: the soil's own bottom"},
+   "where the base stress is taken; default: the soil's own bottom"},
   {0}};
 /* clang-format on */
 
@@ -99,15 +99,19 @@ static pw_real settlement(const pw_sim *sim, const pile_record *c)
   return mass > 0.0 ? sum / mass : 0.0;
 }
 
-/* Mean vertical stress of the base row; kPa, tension positive. */
+/* Mean vertical stress at the base: that of the lowest points and of the ground between their
+ * centres and the base; kPa, tension positive. */
 static pw_real base_stress(const pw_sim *sim, const pile_record *c)
 {
   const pw_points *p = &sim->points;
+  const pw_gravity_param *g = pw_scene_find_effect(&sim->scene, "gravity");
+  pw_real weight = g ? g->acceleration_m_s2 * sim->load_factor : 0.0;
   pw_real vol = 0.0, sum = 0.0;
   for (pw_idx k = 0; k < c->base.n; k++) {
     pw_idx i = p->slot[c->base.id[k]];
     vol += p->vol[i];
-    sum += p->vol[i] * p->stress[p->ld + i];
+    sum += p->vol[i] * p->stress[p->ld + i] -
+           p->mass[i] * weight * (p->x[p->ld + i] - c->base_y);
   }
   return vol > 0.0 ? 1e-3 * sum / vol : 0.0;
 }
@@ -264,8 +268,8 @@ static bool is_base(const pw_sim *sim, const pile_record *c, pw_idx i)
 {
   const pw_points *p = &sim->points;
   pw_real over = p->x[p->ld + i] - c->base_y;
-  return p->body[i] == c->param->soil && p->x[i] > 0.5 * c->far_x && over > 0.0 &&
-         over < sim->mesh.cell;
+  pw_real size = pw_max(sim->mesh.cell, sim->scene.body[c->param->soil].point_size_m);
+  return p->body[i] == c->param->soil && p->x[i] > 0.5 * c->far_x && over > 0.0 && over < size;
 }
 
 /* Ids of the points that `want` accepts, ascending. */
@@ -334,7 +338,7 @@ static pw_status create(pw_sim *sim, const void *param, void **ctx)
   PW_TRY(choose(sim, c, is_base, &c->base));
   PW_REQUIRE(c->tip.n > 0, PW_ERR_SCENE, "no point of body '%s' near its tip", pile->name);
   PW_REQUIRE(c->far.n > 0, PW_ERR_SCENE, "far_field_x_m = %g m: no soil point beyond it", c->far_x);
-  PW_REQUIRE(c->base.n > 0, PW_ERR_SCENE, "base_y_m = %g m: no soil point in the row of cells",
+  PW_REQUIRE(c->base.n > 0, PW_ERR_SCENE, "base_y_m = %g m: no soil point above it",
              c->base_y);
   PW_TRY(pw_mem_alloc("pile record: heights", c->far.n, sizeof(pw_real), &c->far_y));
   for (pw_idx k = 0; k < c->far.n; k++) {
