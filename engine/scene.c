@@ -53,8 +53,10 @@ const pw_key pw_scene_keys_method[] = {
    "largest half diagonal of a point's domain; 0: no limit"},
   {"mass_cut_off", PW_KEY_REAL, AT(method.mass_cut_off), 0, 0.1, "1e-9", NULL, NULL,
    "nodes with less than this part of a full cell's mass stay at rest"},
+  {"noise_damping_per_s", PW_KEY_REAL, AT(method.noise_damping_per_s), 0, 1e6, "0", NULL, NULL,
+   "rate at which velocities of points that the grid does not see die out (a share of PIC)"},
   {"block_elements", PW_KEY_INT, AT(method.block_elements), 0, 1e6, "0", NULL, NULL,
-   "elements in a block of the coloured scatter; 0: chosen from the threads"},
+   "elements in a block of the coloured scatter; 0: chosen from the grid"},
   {0}};
 
 const pw_key pw_scene_keys_output[] = {

@@ -77,6 +77,7 @@ typedef struct pw_scene {
     int basis, update; /**< pw_basis, pw_update */
     pw_real domain_limit_cells;  /**< half diagonal of a domain at most; 0: no limit */
     pw_real mass_cut_off;        /**< of the mass of a full cell's node; nodes below are passive */
+    pw_real noise_damping_per_s; /**< rate at which points' velocities approach the grid's */
     int block_elements;          /**< elements in a METIS block; 0: chosen from the threads */
   } method;
   struct {

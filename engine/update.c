@@ -49,11 +49,12 @@ void pw_block_p2g_momentum(void *ctx, pw_idx block)
 
 static void velocity(pw_sim *sim, pw_idx block, bool remap)
 {
+  const pw_real pic = pw_min(1.0, sim->scene.method.noise_damping_per_s * sim->dt);
   for (int b = 0; b < sim->nbody; b++) {
     pw_idx first, last;
     body_range(sim, block, b, &first, &last);
     pw_real *rec = pw_nodes_field(&sim->nodes, sim->body[b].field);
-    sim->kernels->g2p_velocity(&sim->transfer, rec, first, last);
+    sim->kernels->g2p_velocity(&sim->transfer, rec, pic, first, last);
     if (remap) {
       sim->kernels->p2g_remap(&sim->transfer, rec, first, last);
     }

@@ -90,6 +90,7 @@ static pw_real gather(const pw_hypo *h, const pw_stress_args *a, bool plane, pw_
     memset(g->at_delta, 0, sizeof g->at_delta);
   }
   rotate(h, spin, plane, g);
+  const pw_real least = -3.0 * h->p_min * (1.0 + 1e-9);
   pw_real count = 0.0;
 #pragma omp simd reduction(+ : count)
   for (int i = 0; i < LANES; i++) {
@@ -97,11 +98,13 @@ static pw_real gather(const pw_hypo *h, const pw_stress_args *a, bool plane, pw_
     pw_real size2 = pw_t6_dot(de, de), turn = -pw_t6_dot(pw_t6_load(&g->delta[0][i], LANES), de);
     /* delta:D changes sign at the time turn / size2 */
     pw_real straight = turn <= 1e-6 * size2 ? 1.0 : (turn >= (1.0 - 1e-6) * size2 ? 1.0 : 0.0);
+    pw_real trace = g->stress[0][i] + g->stress[1][i] + g->stress[2][i];
     pw_real specific = 1.0 + g->void_ratio[i];
     g->size[i] = sqrt(size2);
     g->void_mid[i] = specific * sqrt(g->dvol[i]) - 1.0;
     g->void_end[i] = specific * g->dvol[i] - 1.0;
-    pw_real voids = g->void_end[i] > 1e-9 ? straight : 0.0;
+    pw_real pressed = trace < least ? straight : 0.0; /* not stress-free */
+    pw_real voids = g->void_end[i] > 1e-9 ? pressed : 0.0;
     g->able[i] = substep[i] >= 1.0 ? voids : 0.0;
     count += g->able[i];
   }

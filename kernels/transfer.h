@@ -61,8 +61,10 @@ typedef struct pw_kernels {
   void (*p2g_momentum)(const pw_transfer *t, pw_real *rec, pw_idx first, pw_idx last);
   /** Scatter minus the internal force only (USF). */
   void (*p2g_force)(const pw_transfer *t, pw_real *rec, pw_idx first, pw_idx last);
-  /** Gather velocity increments (slot FORCE): v += sum S_ip dv_i. */
-  void (*g2p_velocity)(const pw_transfer *t, const pw_real *rec, pw_idx first, pw_idx last);
+  /** Gather velocity increments (slot FORCE): v += sum S_ip dv_i; then, when @p pic > 0, move v by
+   *  that fraction towards the grid's velocity (slot VEL), sum S_ip v_i. */
+  void (*g2p_velocity)(const pw_transfer *t, const pw_real *rec, pw_real pic, pw_idx first,
+                       pw_idx last);
   /** Scatter the momentum of the updated points into slot REMAP (MUSL). */
   void (*p2g_remap)(const pw_transfer *t, pw_real *rec, pw_idx first, pw_idx last);
   /** Gather dt times the gradient of the velocity in slot @p slot for points [first, last), at

@@ -9,7 +9,7 @@
 static const pw_real RESOLVE = 0.2;
 /* Square of the most that dt omega may be in a step chosen by others. */
 static const pw_real LIMIT2 = 0.25;
-/* Overlap that was not made by motion is worked out by this part of the sliding. */
+/* Overlap that was not made by motion is worked out by this part of the sliding, as by a wedge. */
 static const pw_real WORK_OUT = 0.25;
 
 static pw_real energy(pw_real k, pw_real g)
@@ -48,11 +48,11 @@ static void begin_touch(pw_touch *t, pw_real gap, pw_real closing)
 }
 
 /* Overlap of a contact that lasts. The offset follows a slave on its way out and is worked out in
- * proportion to the relative motion, so that no energy comes from overlap at rest. */
-static void follow_touch(pw_penalty *c, pw_touch *t, pw_real gap, pw_real motion)
+ * proportion to the sliding, so that no energy comes from overlap at rest or from a rebound. */
+static void follow_touch(pw_penalty *c, pw_touch *t, pw_real gap, pw_real slide)
 {
   if (t->offset < 0.0) {
-    pw_real less = pw_min(-t->offset, WORK_OUT * motion);
+    pw_real less = pw_min(-t->offset, WORK_OUT * slide);
     t->offset += less;
     c->dissipated += energy(t->stiff_n, t->overlap) - energy(t->stiff_n, t->overlap + less);
     t->offset = pw_max(t->offset, gap);
@@ -83,7 +83,7 @@ static void search_slave(pw_penalty *c, pw_real reach, pw_idx k)
     begin_touch(t, place.gap, -normal);
     slip = had ? slip : 0.0;
   } else {
-    follow_touch(c, t, place.gap, hypot(normal, slip));
+    follow_touch(c, t, place.gap, fabs(slip));
   }
   c->tally.overlap = pw_max(c->tally.overlap, -place.gap);
   c->pair[c->npair++] = (pw_active_pair){.slave = k,
