@@ -82,6 +82,7 @@ static pw_exit create(run *r)
     bool bad_scene = status == PW_ERR_SCENE || status == PW_ERR_ARGUMENT;
     return complain(r, bad_scene ? PW_EXIT_SCENE : PW_EXIT_FAILED, status);
   }
+  pw_run_outputs_prepare(&r->outputs, r->sim);
   if (r->resumed) {
     status = pw_restart_read(r->folder.checkpoint, r->sim);
     if (status != PW_OK) {
@@ -122,7 +123,7 @@ static pw_status open_outputs(run *r)
   if (!r->resumed) {
     PW_TRY(pw_run_folder_clear(&r->folder));
   }
-  return pw_run_outputs_open(&r->outputs, &r->folder, r->sim, r->resumed);
+  return pw_run_outputs_open(&r->outputs, &r->folder, r->resumed);
 }
 
 static bool at_end(const run *r)

@@ -76,12 +76,10 @@ static pw_status open_files(pw_run_outputs *o, bool resumed)
   const pw_run_folder *f = o->folder;
   pw_status status = PW_OK;
 
-  o->row.n = 0;
-  pw_sim_history(o->sim, &o->row);
   if (resumed) {
-    PW_TRY(pw_history_resume(f->history, &o->row, pw_sim_steps(o->sim), &o->history));
+    PW_TRY(pw_history_resume(f->history, &o->header, pw_sim_steps(o->sim), &o->history));
   } else {
-    PW_TRY(pw_history_open(f->history, &o->row, &o->history));
+    PW_TRY(pw_history_open(f->history, &o->header, &o->history));
   }
   if (pw_sim_scene(o->sim)->output.paraview) {
     status = resumed ? pw_snapshots_resume(f->paraview, pw_sim_time(o->sim), &o->snapshots)
@@ -93,18 +91,23 @@ static pw_status open_files(pw_run_outputs *o, bool resumed)
   return status;
 }
 
-pw_status pw_run_outputs_open(pw_run_outputs *o, const pw_run_folder *folder, pw_sim *sim,
-                              bool resumed)
+void pw_run_outputs_prepare(pw_run_outputs *o, pw_sim *sim)
+{
+  o->sim = sim;
+  o->header.n = 0;
+  pw_sim_history(sim, &o->header);
+}
+
+pw_status pw_run_outputs_open(pw_run_outputs *o, const pw_run_folder *folder, bool resumed)
 {
   o->folder = folder;
-  o->sim = sim;
-  o->checkpoint_step = resumed ? pw_sim_steps(sim) : -1;
+  o->checkpoint_step = resumed ? pw_sim_steps(o->sim) : -1;
   o->checkpoint_wall_s = pw_wall_clock();
   PW_TRY(open_files(o, resumed));
   if (resumed) {
     return PW_OK;
   }
-  PW_TRY(write_due(o, pw_output_due(pw_sim_scene(sim), -1.0, pw_sim_time(sim))));
+  PW_TRY(write_due(o, pw_output_due(pw_sim_scene(o->sim), -1.0, pw_sim_time(o->sim))));
   return pw_run_outputs_checkpoint(o);
 }
 

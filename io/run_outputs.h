@@ -25,6 +25,7 @@ typedef struct pw_run_outputs {
   pw_snapshots *snapshots;   /**< NULL: none wanted, or built without VTK */
   pw_real checkpoint_wall_s; /**< wall clock of the last checkpoint */
   pw_off checkpoint_step;    /**< step of the last checkpoint; -1: none yet */
+  pw_record header;          /**< names of the history's columns */
   pw_record row;             /**< scratch */
   int nwarning;
   const char *warning[PW_WARNINGS]; /**< into text */
@@ -32,12 +33,17 @@ typedef struct pw_run_outputs {
 } pw_run_outputs;
 
 /**
+ * @brief Ask a new simulation for the names of its history, before a checkpoint is loaded: asking
+ *        for a row ends the interval over which effects take means.
+ */
+void pw_run_outputs_prepare(pw_run_outputs *o, pw_sim *sim);
+
+/**
  * @brief Open the files of a run at its start, or, when @p resumed, those of the run whose
- *        checkpoint was loaded into @p sim. At the start the state at t = 0 is written.
+ *        checkpoint was loaded into its simulation. At the start the state at t = 0 is written.
  * @return PW_OK; PW_ERR_FILE; PW_ERR_MEMORY.
  */
-pw_status pw_run_outputs_open(pw_run_outputs *o, const pw_run_folder *folder, pw_sim *sim,
-                              bool resumed);
+pw_status pw_run_outputs_open(pw_run_outputs *o, const pw_run_folder *folder, bool resumed);
 
 /** @brief Write what is due after a step that began at @p old_s; also a checkpoint when the last
  *  one is older than half a minute of wall clock. @return PW_OK; PW_ERR_FILE; PW_ERR_MEMORY. */

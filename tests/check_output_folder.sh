@@ -48,7 +48,7 @@ for ((i = 0; i < 200; i++)); do
   sleep 0.05
 done
 for mode in --resume --force; do
-  expect_exit 1 "$program" run "$scene" $plain --set time.end_s=1000 --out busy $mode
+  expect_exit 1 timeout 20 "$program" run "$scene" $plain --set time.end_s=1000 --out busy $mode
   expect_text stderr 'another run is at work in busy'
 done
 kill -9 $pid

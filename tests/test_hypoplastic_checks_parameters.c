@@ -57,7 +57,7 @@ static void rules_of_what_is_off_do_not_apply(void **unused)
   assert_int_equal(sand()->nstate(v), 8);
 }
 
-/** The keys stand in the order of the parameters; defaults are those of the document's set. */
+/** The keys stand in the order of the parameters; defaults are those of the Karlsruhe sand. */
 static void keys_match_the_parameters(void **unused)
 {
   (void)unused;

@@ -52,7 +52,7 @@ static void random_increments_of_every_size(void **unused)
 {
   (void)unused;
   const double size[4] = {1e-5, 1e-4, 1e-3, 1e-2};
-  /* mean substeps of the note's own trial: 3.5, 14, 37, 132 */
+  /* means of an independent program: 3.5, 14, 37, 132 */
   const double most[4] = {5.0, 20.0, 50.0, 160.0};
   for (int with = 0; with < 2; with++) {
     for (int k = 0; k < 4; k++) {

@@ -15,7 +15,7 @@ import json
 import math
 import sys
 
-GRAVITY, RADIUS, TILT_AT, FIT_FROM = 10.0, 1.6, 2.0, 0.3
+GRAVITY, RADIUS, DENSITY, TILT_AT, FIT_FROM = 10.0, 1.6, 1000.0, 2.0, 0.3
 
 
 def solve(matrix, right):
@@ -89,6 +89,9 @@ def main():
                   f"ratio {way[k] / (0.5 * a * t * t):.4f}")
     if way[-1] != 0.0:
         print(f"turned angle x radius / way {angle[-1] * RADIUS / way[-1]:.4f}, exact {ratio:.4f}")
+    weight = DENSITY * math.pi * RADIUS**2 * GRAVITY * math.cos(math.radians(tilt_deg))
+    push = [-history["contact_force_y_n"][k] for k in late]
+    print(f"mean normal force / (m g cos tilt) {sum(push) / len(push) / weight:.4f}")
 
 
 main()
