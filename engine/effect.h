@@ -36,12 +36,12 @@ typedef struct pw_hook {
 } pw_hook; /**< a list ends with {0, NULL} */
 
 struct pw_effect {
-  const char *name;      /**< key of its section in the scene file */
-  const char *brief;     /**< one line for `pilewright list` */
-  bool many;             /**< the section is a list; each entry is one instance */
+  const char *name;         /**< key of its section in the scene file */
+  const char *brief;        /**< one line for `pilewright list` */
+  bool many;                /**< the section is a list; each entry is one instance */
   bool own_velocity_fields; /**< asks for one velocity field per body (contact) */
-  uint64_t point_fields; /**< bits of pw_field_id to allocate */
-  const pw_key *keys;    /**< offsets into its parameter struct */
+  uint64_t point_fields;    /**< bits of pw_field_id to allocate */
+  const pw_key *keys;       /**< offsets into its parameter struct */
   const pw_hook *hooks;
   /** @brief Rules across keys; the section's name is added by the caller. May be NULL.
    *  @return PW_OK or PW_ERR_SCENE. */

@@ -34,7 +34,10 @@ static int components(const pw_points *p, pw_field_id id)
   }
 }
 
-static bool row_is_real(pw_field_id id) { return strcmp(rows[id].type, "real") == 0; }
+static bool row_is_real(pw_field_id id)
+{
+  return strcmp(rows[id].type, "real") == 0;
+}
 
 static void **member_of(pw_points *p, pw_field_id id)
 {

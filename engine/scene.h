@@ -44,8 +44,8 @@ typedef struct pw_scene_refine {
 /** One entry of `bodies:`. */
 typedef struct pw_scene_body {
   char name[PW_NAME];
-  int material; /**< index into pw_scene.material */
-  int shape;    /**< pw_shape */
+  int material;                  /**< index into pw_scene.material */
+  int shape;                     /**< pw_shape */
   pw_real x_m[2], y_m[2];        /**< rectangle: extent */
   pw_real centre_m[2], radius_m; /**< disc, and the pile's radius */
   pw_real tip_y_m, length_m;     /**< pile: height of its lowest point, whole length */
@@ -74,7 +74,7 @@ typedef struct pw_scene {
     pw_real end_s, cfl, dt_max_s, dt_s; /**< dt_s > 0 fixes the step */
   } time;
   struct {
-    int basis, update; /**< pw_basis, pw_update */
+    int basis, update;           /**< pw_basis, pw_update */
     pw_real domain_limit_cells;  /**< half diagonal of a domain at most; 0: no limit */
     pw_real mass_cut_off;        /**< of the mass of a full cell's node; nodes below are passive */
     pw_real noise_damping_per_s; /**< rate at which points' velocities approach the grid's */
@@ -83,7 +83,7 @@ typedef struct pw_scene {
   struct {
     pw_real history_every_s, snapshot_every_s, checkpoint_every_s;
     bool paraview, pictures;
-    pw_reals picture_times_s; /**< besides the end */
+    pw_reals picture_times_s;               /**< besides the end */
     pw_real picture_x_m[2], picture_y_m[2]; /**< window; equal ends: the whole grid */
   } output;
   int nmaterial, nbody, neffect;

@@ -8,8 +8,7 @@ static void append_effect(pw_sim *sim, int e, pw_stage stage)
   const pw_effect *type = sim->scene.effect[e].type;
   for (const pw_hook *h = type->hooks; h && h->fn; h++) {
     if (h->stage == stage) {
-      sim->schedule.hook[sim->schedule.n++] =
-          (pw_scheduled){stage, h->fn, sim->ctx[e], type->name};
+      sim->schedule.hook[sim->schedule.n++] = (pw_scheduled){stage, h->fn, sim->ctx[e], type->name};
     }
   }
 }

@@ -85,6 +85,25 @@ static int state_count(const pw_scene *scene)
   return count;
 }
 
+/* Half-sides of point i. uGIMP domains are squares to the grid: one that is not (a sector of a
+ * disc) becomes the square of its area. */
+static void set_half(pw_sim *sim, pw_idx i, pw_real half[4])
+{
+  pw_points *p = &sim->points;
+  if (sim->scene.method.basis == PW_UGIMP && (half[1] != 0.0 || half[2] != 0.0)) {
+    half[0] = half[3] = 0.5 * sqrt(pw_domain_area(half));
+    half[1] = half[2] = 0.0;
+  }
+  for (int k = 0; k < 4; k++) {
+    if (p->half) {
+      p->half[k * p->ld + i] = half[k];
+    }
+    if (p->half0) {
+      p->half0[k * p->ld + i] = half[k];
+    }
+  }
+}
+
 /* Points from the initial domains: mass and volume per radian or metre. */
 static void fill_points(pw_sim *sim, const pw_domains *d)
 {
@@ -101,14 +120,7 @@ static void fill_points(pw_sim *sim, const pw_domains *d)
     p->vol[i] = pw_domain_area(half) * (axi ? p->x[i] : 1.0);
     p->mass[i] = p->vol[i] * pw_scene_density(&sim->scene, d->body[i]);
     p->def_grad[i] = p->def_grad[3 * p->ld + i] = p->def_grad[4 * p->ld + i] = 1.0;
-    for (int k = 0; k < 4; k++) {
-      if (p->half) {
-        p->half[k * p->ld + i] = half[k];
-      }
-      if (p->half0) {
-        p->half0[k * p->ld + i] = half[k];
-      }
-    }
+    set_half(sim, i, half);
   }
   /* Padding lanes take part in nothing but must hold numbers. */
   for (pw_idx i = d->n; i < p->ld; i++) {
@@ -136,7 +148,8 @@ static pw_status create_limits(pw_sim *sim, const pw_domains *d, pw_real *larges
   for (pw_idx i = 0; i < d->n; i++) {
     pw_real start = half_diagonal(d, i) * (1.0 + 1e-12);
     sim->limit[i] = cells > 0.0 ? pw_max(start, cells * sim->mesh.cell) : 1e30;
-    *largest = pw_max(*largest, cells > 0.0 ? sim->limit[i] / sim->mesh.cell : 0.0);
+    /* Without a limit domains may grow to four cells before the run stops. */
+    *largest = pw_max(*largest, cells > 0.0 ? sim->limit[i] / sim->mesh.cell : 4.0);
   }
   return PW_OK;
 }
@@ -174,8 +187,7 @@ static pw_status create_blocks(pw_sim *sim, pw_real reach_cells)
   reach = reach < 2 ? 2 : reach;
   pw_idx per_block = sim->scene.method.block_elements;
   per_block = per_block > 0 ? per_block : pw_blocks_choose_size(m->nelem, sim->threads);
-  pw_status status =
-      pw_blocks_create(m->cells, weight, per_block, reach, sim->nbody, &sim->blocks);
+  pw_status status = pw_blocks_create(m->cells, weight, per_block, reach, sim->nbody, &sim->blocks);
   pw_mem_free(&weight);
   PW_TRY(status);
   PW_TRY(pw_mem_alloc("block sums", sim->blocks.nblock, sizeof(pw_block_sums), &sim->sums));
@@ -258,8 +270,8 @@ static pw_status build(pw_sim *sim)
     density = pw_min(density, pw_scene_density(scene, b));
   }
   pw_real full = density * sim->mesh.cell * sim->mesh.cell;
-  sim->mass_cut_off = scene->method.mass_cut_off * full *
-                      (scene->geometry == PW_AXI ? sim->mesh.cell : 1.0);
+  sim->mass_cut_off =
+      scene->method.mass_cut_off * full * (scene->geometry == PW_AXI ? sim->mesh.cell : 1.0);
   PW_TRY(create_effects(sim));
   pw_for_blocks(&sim->blocks, sim->threads, pw_block_wave_speed, sim);
   PW_TRY(pw_update_collect(sim));
@@ -333,15 +345,30 @@ pw_status pw_sim_step(pw_sim *sim, pw_real dt_limit)
   return status;
 }
 
-pw_real pw_sim_time(const pw_sim *sim) { return sim->time; }
+pw_real pw_sim_time(const pw_sim *sim)
+{
+  return sim->time;
+}
 
-pw_off pw_sim_steps(const pw_sim *sim) { return sim->step; }
+pw_off pw_sim_steps(const pw_sim *sim)
+{
+  return sim->step;
+}
 
-const pw_scene *pw_sim_scene(const pw_sim *sim) { return &sim->scene; }
+const pw_scene *pw_sim_scene(const pw_sim *sim)
+{
+  return &sim->scene;
+}
 
-const pw_mesh *pw_sim_mesh(const pw_sim *sim) { return &sim->mesh; }
+const pw_mesh *pw_sim_mesh(const pw_sim *sim)
+{
+  return &sim->mesh;
+}
 
-const pw_points *pw_sim_points(const pw_sim *sim) { return &sim->points; }
+const pw_points *pw_sim_points(const pw_sim *sim)
+{
+  return &sim->points;
+}
 
 void *pw_sim_effect_ctx(const pw_sim *sim, const char *name)
 {

@@ -27,14 +27,14 @@ typedef enum pw_timer {
 
 /** Energies since the start, whole body (per metre in plane strain); J. */
 typedef struct pw_energy {
-  pw_real kinetic;        /**< now */
-  pw_real strain_work;    /**< work of stresses, stored and dissipated in the soil */
-  pw_real external;       /**< work of gravity, loads, hammer, prescribed motion */
-  pw_real contact;        /**< dissipated by friction and by grid contact */
-  pw_real spring;         /**< stored in penalty springs now */
-  pw_real damping;        /**< dissipated by local damping */
-  pw_real absorbed;       /**< by absorbing boundaries */
-  pw_real initial;        /**< kinetic at the start */
+  pw_real kinetic;     /**< now */
+  pw_real strain_work; /**< work of stresses, stored and dissipated in the soil */
+  pw_real external;    /**< work of gravity, loads, hammer, prescribed motion */
+  pw_real contact;     /**< dissipated by friction and by grid contact */
+  pw_real spring;      /**< stored in penalty springs now */
+  pw_real damping;     /**< dissipated by local damping */
+  pw_real absorbed;    /**< by absorbing boundaries */
+  pw_real initial;     /**< kinetic at the start */
 } pw_energy;
 
 /** What a run can be asked at any time. */
@@ -42,10 +42,10 @@ typedef struct pw_report {
   int threads;
   pw_idx points, nodes, elements, blocks, colours;
   pw_off steps;
-  pw_real time_s, dt_s;          /**< dt_s: the next step */
-  pw_real dt_min_s, dt_max_s;    /**< over the steps made; 0 before the first */
+  pw_real time_s, dt_s;       /**< dt_s: the next step */
+  pw_real dt_min_s, dt_max_s; /**< over the steps made; 0 before the first */
   pw_real stage_wall_s[PW_TIMER_COUNT];
-  pw_real wall_s;                /**< spent in pw_sim_step */
+  pw_real wall_s; /**< spent in pw_sim_step */
   pw_off bytes_per_point;
   pw_energy energy;
   pw_off sorts, domains_limited, domains_rebuilt, vertices_clamped;

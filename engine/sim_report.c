@@ -112,9 +112,9 @@ void pw_sim_results(const pw_sim *sim, pw_record *out)
 /* Numbers that tell one scene's checkpoint from another's. */
 static pw_status archive_identity(pw_sim *sim, pw_archive *ar)
 {
-  const pw_idx want[8] = {sim->points.n,         sim->mesh.nnode,  sim->mesh.nelem,
-                          sim->nbody,            sim->blocks.nblock, sim->points.nstate,
-                          sim->scene.method.basis, sim->scene.neffect};
+  const pw_idx want[8] = {
+      sim->points.n,      sim->mesh.nnode,    sim->mesh.nelem,         sim->nbody,
+      sim->blocks.nblock, sim->points.nstate, sim->scene.method.basis, sim->scene.neffect};
   pw_idx have[8];
   memcpy(have, want, sizeof have);
   PW_TRY(ar->index(ar, "sim/identity", have, 8));
@@ -129,13 +129,14 @@ static pw_status archive_numbers(pw_sim *sim, pw_archive *ar)
 {
   pw_energy *e = &sim->energy;
   pw_material_counts *m = &sim->material;
-  pw_real *const real[] = {&sim->time,      &sim->dt,       &sim->dt_next,     &sim->dt_min,
-                           &sim->dt_max,    &sim->dt_contact, &sim->load_factor, &e->strain_work,
-                           &e->external,    &e->contact,    &e->spring,        &e->damping,
-                           &e->absorbed,    &e->initial,    &e->kinetic,       &sim->external_last,
-                           &sim->external_gross};
-  pw_off *const count[] = {&sim->step,    &sim->sorts,  &sim->limited, &sim->rebuilt, &sim->clamped,
-                           &m->substeps,  &m->rhs,      &m->rejected,  &m->forced,    &m->cut_off};
+  pw_real *const real[] = {
+      &sim->time,          &sim->dt,         &sim->dt_next,     &sim->dt_min,
+      &sim->dt_max,        &sim->dt_contact, &sim->load_factor, &e->strain_work,
+      &e->external,        &e->contact,      &e->spring,        &e->damping,
+      &e->absorbed,        &e->initial,      &e->kinetic,       &sim->external_last,
+      &sim->external_gross};
+  pw_off *const count[] = {&sim->step,   &sim->sorts, &sim->limited, &sim->rebuilt, &sim->clamped,
+                           &m->substeps, &m->rhs,     &m->rejected,  &m->forced,    &m->cut_off};
   enum { NREAL = sizeof real / sizeof real[0], NCOUNT = sizeof count / sizeof count[0] };
   pw_real r[NREAL];
   pw_off c[NCOUNT];

@@ -33,7 +33,7 @@ typedef struct pw_block_sums {
   pw_real kinetic;     /**< J per radian or metre, now */
   pw_real speed_max;   /**< max of c + |v|; m/s */
   pw_off limited, rebuilt;
-  pw_idx bad;             /**< first point whose stress or domain failed, or -1 */
+  pw_idx bad; /**< first point whose stress or domain failed, or -1 */
   pw_status bad_status;
   pw_weights_report weights;
   pw_material_counts material;
@@ -70,26 +70,26 @@ struct pw_sim {
   pw_real dt;      /**< of the step being made; s */
   pw_real dt_next; /**< stable step for the next; s */
   pw_real dt_min, dt_max;
-  pw_real dt_contact; /**< largest step a penalty contact allows, set by it each step; 0: none */
-  pw_real measure;    /**< 2 pi (axisymmetric) or 1: times a per-radian value = whole body */
+  pw_real dt_contact;   /**< largest step a penalty contact allows, set by it each step; 0: none */
+  pw_real measure;      /**< 2 pi (axisymmetric) or 1: times a per-radian value = whole body */
   pw_real mass_cut_off; /**< kg */
   pw_real mass;         /**< of all points; kg per metre or radian */
   pw_real signal_speed; /**< largest c + |v| at the end of the last step; m/s */
   pw_real load_factor;  /**< of gravity now, 0..1: the ramp; 1 without gravity */
   int node_slot;        /**< PW_NODE_VEL or PW_NODE_REMAP: what a constraint hook is to change */
-  bool sort_needed;        /**< points are not in the order of their blocks */
+  bool sort_needed;     /**< points are not in the order of their blocks */
 
   pw_energy energy;       /**< kinetic: at the end of the last step */
   pw_real external_last;  /**< energy.external at the end of the last step; J */
   pw_real external_gross; /**< sum of the sizes of its changes; J */
-  pw_block_sums *sums; /**< [nblock] */
+  pw_block_sums *sums;    /**< [nblock] */
   pw_real stage_wall[PW_TIMER_COUNT];
   pw_real wall;
   pw_off sorts, limited, rebuilt, clamped;
   pw_material_counts material;
-  pw_real *limit;  /**< [n by id] half diagonal allowed to each domain; m; NULL without CPDI */
-  pw_idx *from;    /**< [n] sort scratch */
-  pw_idx *elem;    /**< [n] sort scratch */
+  pw_real *limit;   /**< [n by id] half diagonal allowed to each domain; m; NULL without CPDI */
+  pw_idx *from;     /**< [n] sort scratch */
+  pw_idx *elem;     /**< [n] sort scratch */
   pw_real *scratch; /**< [ld] */
 };
 

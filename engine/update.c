@@ -61,9 +61,15 @@ static void velocity(pw_sim *sim, pw_idx block, bool remap)
   }
 }
 
-void pw_block_velocity(void *ctx, pw_idx block) { velocity(ctx, block, false); }
+void pw_block_velocity(void *ctx, pw_idx block)
+{
+  velocity(ctx, block, false);
+}
 
-void pw_block_velocity_remap(void *ctx, pw_idx block) { velocity(ctx, block, true); }
+void pw_block_velocity_remap(void *ctx, pw_idx block)
+{
+  velocity(ctx, block, true);
+}
 
 /* Deformation gradient F(n+1) = (I + grad du) F(n) (thesis eq. 2.28), volume, and the increments
  * that materials take. Returns the first point with a volume ratio that is not positive, or -1. */
@@ -343,6 +349,13 @@ pw_status pw_update_sort(pw_sim *sim)
     pw_points_permute(p, sim->from, sim->scratch);
   }
   pw_for_blocks(&sim->blocks, sim->threads, pw_block_weights, sim);
+  for (pw_idx k = 0; k < sim->blocks.nblock; k++) {
+    pw_idx far = sim->sums[k].weights.overrun;
+    if (far >= 0) { /* its scatter would touch nodes of other blocks of the colour */
+      return fail_at(sim, far, PW_RETRY_DOMAIN_INVERTED,
+                     "a domain reaches beyond the halo of its block (method.domain_limit_cells)");
+    }
+  }
   sim->sort_needed = false;
   sim->sorts++;
   return PW_OK;

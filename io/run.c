@@ -163,6 +163,8 @@ static void print_results(run *r)
     }
     if (!item->array) {
       fprintf(r->out, " %.6g", item->value);
+    } else if (item->count == 0) {
+      fputs(" none", r->out);
     }
     fputc('\n', r->out);
   }

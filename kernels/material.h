@@ -22,34 +22,34 @@ enum { PW_MAX_PARAMS = 32, PW_MAX_STATE = 16 };
 
 /** Counters a batch adds to; summed over blocks in block order. */
 typedef struct pw_material_counts {
-  pw_off substeps;  /**< accepted substeps */
-  pw_off rhs;       /**< right-hand-side evaluations */
-  pw_off rejected;  /**< substeps repeated with a smaller size */
-  pw_off forced;    /**< substeps accepted at the limits of size or number */
-  pw_off cut_off;   /**< states moved to the low-stress or stress-ratio limit */
+  pw_off substeps; /**< accepted substeps */
+  pw_off rhs;      /**< right-hand-side evaluations */
+  pw_off rejected; /**< substeps repeated with a smaller size */
+  pw_off forced;   /**< substeps accepted at the limits of size or number */
+  pw_off cut_off;  /**< states moved to the low-stress or stress-ratio limit */
 } pw_material_counts;
 
 /** Arguments of one batch update; all arrays borrowed. */
 typedef struct pw_stress_args {
-  pw_idx n;               /**< points in the batch, at most PW_CHUNK in a step */
-  pw_idx ld;              /**< leading dimension of stress and state */
-  pw_idx ldi;             /**< leading dimension of the increments and outputs */
-  pw_real dt;             /**< s */
-  const pw_real *dstrain; /**< [6][ldi] increment of strain D dt, tensor shears; - */
-  const pw_real *spin;    /**< [3][ldi] increment of spin W dt: xy, yz, zx with
+  pw_idx n;                   /**< points in the batch, at most PW_CHUNK in a step */
+  pw_idx ld;                  /**< leading dimension of stress and state */
+  pw_idx ldi;                 /**< leading dimension of the increments and outputs */
+  pw_real dt;                 /**< s */
+  const pw_real *dstrain;     /**< [6][ldi] increment of strain D dt, tensor shears; - */
+  const pw_real *spin;        /**< [3][ldi] increment of spin W dt: xy, yz, zx with
                                W_xy = (dv_x/dy - dv_y/dx)/2; rad */
-  const pw_real *dvol;    /**< [ldi] volume ratio J(n+1)/J(n) of the step; - */
-  const pw_real *left_cg; /**< [6][ldi] b = F F^T at the end of the step, or NULL unless the
+  const pw_real *dvol;        /**< [ldi] volume ratio J(n+1)/J(n) of the step; - */
+  const pw_real *left_cg;     /**< [6][ldi] b = F F^T at the end of the step, or NULL unless the
                                material sets needs_left_cg */
-  const pw_real *jac;     /**< [ldi] J = det F at the end of the step, or NULL likewise */
-  const pw_real *density; /**< [ldi] at the end of the step; kg/m3 */
-  pw_real *stress;        /**< [6][ld] Cauchy stress, in and out; Pa */
-  pw_real *state;         /**< [nstate][ld] state variables, in and out; may be NULL if none */
-  pw_real *wave_speed;    /**< [ldi] out: upper bound of the wave speed; m/s */
-  pw_real *tangent;       /**< [36][ldi] out, row-major d stress / d strain with ENGINEERING
+  const pw_real *jac;         /**< [ldi] J = det F at the end of the step, or NULL likewise */
+  const pw_real *density;     /**< [ldi] at the end of the step; kg/m3 */
+  pw_real *stress;            /**< [6][ld] Cauchy stress, in and out; Pa */
+  pw_real *state;             /**< [nstate][ld] state variables, in and out; may be NULL if none */
+  pw_real *wave_speed;        /**< [ldi] out: upper bound of the wave speed; m/s */
+  pw_real *tangent;           /**< [36][ldi] out, row-major d stress / d strain with ENGINEERING
                                shear columns, or NULL when not asked for; Pa */
   pw_material_counts *counts; /**< added to, or NULL */
-  pw_idx bad;             /**< out: first failing point of the batch, or -1 */
+  pw_idx bad;                 /**< out: first failing point of the batch, or -1 */
 } pw_stress_args;
 
 /** A state variable: its name with unit, for output ("void_ratio", "intergranular_strain_xx"). */
@@ -60,14 +60,14 @@ typedef struct pw_state_def {
 
 /** A material model; constant. */
 typedef struct pw_material {
-  const char *name;          /**< as written in a scene: "hypoplastic_sand" */
-  const char *brief;         /**< one line, with its source */
-  const pw_key *keys;        /**< parameters: PW_KEY_REAL, PW_KEY_BOOL or PW_KEY_CHOICE rows whose
+  const char *name;           /**< as written in a scene: "hypoplastic_sand" */
+  const char *brief;          /**< one line, with its source */
+  const pw_key *keys;         /**< parameters: PW_KEY_REAL, PW_KEY_BOOL or PW_KEY_CHOICE rows whose
                                   offset is index * sizeof(pw_real): every value is stored as a
                                   pw_real (false = 0, true = 1, a choice as its index) */
   const pw_state_def *states; /**< all state variables it may carry, in order */
-  bool needs_left_cg;        /**< stress follows from F, not from increments */
-  bool takes_initial_stress; /**< may start from a prescribed stress */
+  bool needs_left_cg;         /**< stress follows from F, not from increments */
+  bool takes_initial_stress;  /**< may start from a prescribed stress */
   /** @brief Cross-parameter rules. @return PW_OK or PW_ERR_SCENE with the broken rule. */
   pw_status (*check)(const pw_real *param);
   /** @brief State variables carried with these parameters (0 .. PW_MAX_STATE). */

@@ -14,29 +14,37 @@
 #include "kernels/transfer_cpdi.inc"
 
 /* Tensor-product bases sampled at the point: uGIMP (3 x 3 nodes) and linear (2 x 2 nodes). */
-#define PW_TAG plane_ugimp_quad4
-#define PW_AXI 0
+#define PW_TAG  plane_ugimp_quad4
+#define PW_AXI  0
 #define PW_SPAN 3
 #include "kernels/transfer_tensor.inc"
-#define PW_TAG axi_ugimp_quad4
-#define PW_AXI 1
+#define PW_TAG  axi_ugimp_quad4
+#define PW_AXI  1
 #define PW_SPAN 3
 #include "kernels/transfer_tensor.inc"
-#define PW_TAG plane_linear_quad4
-#define PW_AXI 0
+#define PW_TAG  plane_linear_quad4
+#define PW_AXI  0
 #define PW_SPAN 2
 #include "kernels/transfer_tensor.inc"
-#define PW_TAG axi_linear_quad4
-#define PW_AXI 1
+#define PW_TAG  axi_linear_quad4
+#define PW_AXI  1
 #define PW_SPAN 2
 #include "kernels/transfer_tensor.inc"
 
 static const pw_kernels instances[] = {
 #define PW_INSTANCE(tag, geometry, basis, vertices)                                                \
-  {#tag,                 geometry,                basis,                                           \
-   vertices,             weights_##tag,           p2g_##tag,                                       \
-   p2g_momentum_##tag,   p2g_force_##tag,         g2p_velocity_##tag,                              \
-   p2g_remap_##tag,      g2p_gradient_##tag,      p2g_surface_##tag},
+  {#tag,                                                                                           \
+   geometry,                                                                                       \
+   basis,                                                                                          \
+   vertices,                                                                                       \
+   weights_##tag,                                                                                  \
+   p2g_##tag,                                                                                      \
+   p2g_momentum_##tag,                                                                             \
+   p2g_force_##tag,                                                                                \
+   g2p_velocity_##tag,                                                                             \
+   p2g_remap_##tag,                                                                                \
+   g2p_gradient_##tag,                                                                             \
+   p2g_surface_##tag},
 #include "kernels/instances.def"
 #undef PW_INSTANCE
 };

@@ -21,16 +21,16 @@ typedef struct pw_transfer {
   pw_real origin[2]; /**< lower left corner of the grid; m */
   pw_real cell;      /**< m */
   pw_idx cells[2];
-  pw_idx row;        /**< nodes along x: node above node k is k + row */
-  pw_idx reach;      /**< cells from the home element within which vertices may lie */
-  pw_idx ld;         /**< leading dimension of the point arrays */
-  pw_real *x, *v;           /**< [2][ld] */
+  pw_idx row;                /**< nodes along x: node above node k is k + row */
+  pw_idx reach;              /**< cells from the home element within which vertices may lie */
+  pw_idx ld;                 /**< leading dimension of the point arrays */
+  pw_real *x, *v;            /**< [2][ld] */
   const pw_real *mass, *vol; /**< [ld] */
-  const pw_real *stress;    /**< [6][ld] */
-  const pw_real *half;      /**< [4][ld] half-side vectors; NULL for the linear basis */
-  const pw_idx *home;       /**< [ld] */
-  pw_idx *corner;           /**< [vertices][ld] first node of each vertex' element */
-  pw_real *local;           /**< [2 vertices][ld] local coordinates, xi of all, then eta */
+  const pw_real *stress;     /**< [6][ld] */
+  const pw_real *half;       /**< [4][ld] half-side vectors; NULL for the linear basis */
+  const pw_idx *home;        /**< [ld] */
+  pw_idx *corner;            /**< [vertices][ld] first node of each vertex' element */
+  pw_real *local;            /**< [2 vertices][ld] local coordinates, xi of all, then eta */
 } pw_transfer;
 
 /** What pw_kernels.weights finds in a range; indices are points, -1 = none. */

@@ -16,8 +16,8 @@ enum { SLOT_VEL = 1, SLOT_FORCE = 3, SLOT_REMAP = 5 };
 /** Scatter what @p set selects; always a literal, so unused terms are compiled away. */
 enum { SET_MOMENTUM = 1, SET_FORCE = 2 };
 
-#define PW_PASTE_(a, b) a##_##b
-#define PW_PASTE(a, b) PW_PASTE_(a, b)
+#define PW_PASTE_(a, b)  a##_##b
+#define PW_PASTE(a, b)   PW_PASTE_(a, b)
 #define PW_NAME_OF(verb) PW_PASTE(verb, PW_TAG)
 
 /** A coordinate in cells from the grid's corner, moved inside [0, cells]; NaN becomes 0. */
@@ -37,13 +37,37 @@ static inline void quad_weights(pw_real a, pw_real b, pw_real w[4])
   w[3] = a * b;
 }
 
-/** rec[0..7] += w * value[0..7]: one or two vector operations. */
-static inline void record_add(pw_real *restrict rec, pw_real w, const pw_real *restrict value)
-{
-  for (int k = 0; k < NODE; k++) {
-    rec[k] += w * value[k];
-  }
-}
+/** Four and two reals in a register. Values are put together in registers: written one by one to
+ *  an array and read back as a vector, they would wait for the stores. */
+typedef pw_real real4 __attribute__((vector_size(4 * sizeof(pw_real))));
+typedef pw_real real2
+    __attribute__((vector_size(2 * sizeof(pw_real)), aligned(sizeof(pw_real)), may_alias));
+
+/** What a vertex adds to the nodes of its element: slots 0-3 and slots 4, 5 of their records. */
+typedef struct vertex_value {
+  real4 low;
+  pw_real high[2];
+} vertex_value;
+
+/** rec += w value; rec is aligned to a cache line. */
+#define RECORD_ADD(rec, w, value, nhigh)                                                           \
+  do {                                                                                             \
+    real4 *low_ = __builtin_assume_aligned((rec), PW_ALIGN);                                       \
+    *low_ += (w) * (value)->low;                                                                   \
+    for (int h_ = 0; h_ < (nhigh); h_++) {                                                         \
+      (rec)[4 + h_] += (w) * (value)->high[h_];                                                    \
+    }                                                                                              \
+  } while (0)
+
+/** Add a vertex' value to the four nodes of its element with the bilinear weights w. */
+#define ELEMENT_ADD(rec, row, w, value, nhigh)                                                     \
+  do {                                                                                             \
+    pw_real *r_ = (rec);                                                                           \
+    RECORD_ADD(r_, (w)[0], value, nhigh);                                                          \
+    RECORD_ADD(r_ + NODE, (w)[1], value, nhigh);                                                   \
+    RECORD_ADD(r_ + (pw_off)(row)*NODE, (w)[2], value, nhigh);                                     \
+    RECORD_ADD(r_ + (pw_off)((row) + 1) * NODE, (w)[3], value, nhigh);                             \
+  } while (0)
 
 /** Row of an element number; exact below 2^52 / cells. */
 static inline pw_idx element_row(pw_idx e, pw_real inv_cells)

@@ -92,7 +92,7 @@ static void discs_that_collide(void **state)
     d->coefficient = 0.05;
     test_gravity(&s, 0.1);
     test_roller(&s, PW_SIDE_BOTTOM);
-    compare(&s, name[update], 100, 3);
+    compare(&s, name[update], 60, 3);
   }
 }
 
@@ -102,7 +102,7 @@ static void pile_in_sand(void **state)
   for (int contact = TEST_PENALTY; contact < TEST_CONTACTS; contact++) {
     static pw_scene s;
     test_hammered_pile(&s, contact, 0.125);
-    compare(&s, test_contact_name[contact], 120, 1);
+    compare(&s, test_contact_name[contact], 60, 1);
   }
 }
 

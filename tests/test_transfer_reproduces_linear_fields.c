@@ -58,8 +58,14 @@ static void random_points(world *w, const pw_kernels *k, uint64_t seed)
   }
 }
 
-static pw_real node_x(const world *w, int k) { return w->t.origin[0] + cell * (k % ROW); }
-static pw_real node_y(const world *w, int k) { return w->t.origin[1] + cell * (k / ROW); }
+static pw_real node_x(const world *w, int k)
+{
+  return w->t.origin[0] + cell * (k % ROW);
+}
+static pw_real node_y(const world *w, int k)
+{
+  return w->t.origin[1] + cell * (k / ROW);
+}
 
 static void weights(world *w, const pw_kernels *k)
 {

@@ -35,7 +35,7 @@ typedef struct pw_reals {
 
 /** One input key. A table ends with a row whose name is NULL. */
 typedef struct pw_key {
-  const char *name;     /**< as written in the scene, unit included: "cell_m" */
+  const char *name; /**< as written in the scene, unit included: "cell_m" */
   pw_key_type type;
   size_t offset;        /**< bytes from the start of the table's struct */
   pw_real lo, hi;       /**< accepted range, inclusive, for each number */

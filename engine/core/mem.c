@@ -57,8 +57,17 @@ void pw_mem_free(void *ptr)
   memcpy(ptr, &block, sizeof block);
 }
 
-pw_off pw_mem_count(void) { return mem_count; }
+pw_off pw_mem_count(void)
+{
+  return mem_count;
+}
 
-pw_off pw_mem_bytes(void) { return mem_bytes; }
+pw_off pw_mem_bytes(void)
+{
+  return mem_bytes;
+}
 
-void pw_mem_fail_after(pw_off nth) { mem_fail = nth; }
+void pw_mem_fail_after(pw_off nth)
+{
+  mem_fail = nth;
+}

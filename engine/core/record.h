@@ -16,9 +16,9 @@ enum { PW_RECORD_MAX = 96, PW_RECORD_ARRAY = 128 };
 /** One named value; count > 1 or array == true marks a list (set_per_blow_m). */
 typedef struct pw_record_item {
   char name[64];
-  pw_real value;           /**< when array is NULL */
-  const pw_real *array;    /**< borrowed from the owner until the record is dropped, or NULL */
-  int count;               /**< elements of array */
+  pw_real value;        /**< when array is NULL */
+  const pw_real *array; /**< borrowed from the owner until the record is dropped, or NULL */
+  int count;            /**< elements of array */
 } pw_record_item;
 
 typedef struct pw_record {

@@ -30,9 +30,15 @@ pw_status pw_error_set(pw_status s, const char *file, int line, const char *func
   return s;
 }
 
-const char *pw_error_text(void) { return error_text; }
+const char *pw_error_text(void)
+{
+  return error_text;
+}
 
-const char *pw_error_where(void) { return error_where; }
+const char *pw_error_where(void)
+{
+  return error_where;
+}
 
 void pw_error_clear(void)
 {

@@ -15,9 +15,9 @@ typedef int32_t pw_idx; /**< point, node, element, block index */
 typedef int64_t pw_off; /**< offsets into CSR arrays, byte and step counts */
 
 enum {
-  PW_ALIGN = 64,  /**< bytes; one cache line, one AVX-512 vector */
-  PW_LANES = 8,   /**< doubles in one alignment unit; arrays are padded to a multiple of it */
-  PW_CHUNK = 64,  /**< points handled at once by the fused point loops: sizes their stack scratch */
+  PW_ALIGN = 64, /**< bytes; one cache line, one AVX-512 vector */
+  PW_LANES = 8,  /**< doubles in one alignment unit; arrays are padded to a multiple of it */
+  PW_CHUNK = 64, /**< points handled at once by the fused point loops: sizes their stack scratch */
   PW_MAX_BODIES = 8,
   PW_MAX_FIELDS = 2 /**< velocity fields on the grid: 2 when a contact effect is on */
 };
@@ -28,7 +28,13 @@ static inline pw_idx pw_pad(pw_idx n)
   return (n + PW_LANES - 1) / PW_LANES * PW_LANES;
 }
 
-static inline pw_real pw_min(pw_real a, pw_real b) { return a < b ? a : b; }
-static inline pw_real pw_max(pw_real a, pw_real b) { return a > b ? a : b; }
+static inline pw_real pw_min(pw_real a, pw_real b)
+{
+  return a < b ? a : b;
+}
+static inline pw_real pw_max(pw_real a, pw_real b)
+{
+  return a > b ? a : b;
+}
 
 #endif /* PW_CORE_TYPES_H */
