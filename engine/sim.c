@@ -285,7 +285,6 @@ static pw_status build(pw_sim *sim)
     sim->body[b].start[0] = com[0];
     sim->body[b].start[1] = com[1];
   }
-  sim->energy.initial = sim->energy.kinetic;
   return PW_OK;
 }
 
@@ -329,6 +328,9 @@ pw_status pw_sim_step(pw_sim *sim, pw_real dt_limit)
 {
   double start = omp_get_wtime();
   omp_set_num_threads(sim->threads);
+  if (sim->step == 0) { /* here, not in pw_sim_create: the caller may have set velocities */
+    sim->energy.initial = pw_kinetic_energy(sim);
+  }
   sim->dt = sim->dt_next;
   if (sim->dt_contact > 0.0) {
     sim->dt = pw_min(sim->dt, sim->dt_contact);

@@ -36,6 +36,16 @@ void pw_body_centre(const pw_sim *sim, int body, pw_real *out)
   out[5] = m;
 }
 
+pw_real pw_kinetic_energy(const pw_sim *sim)
+{
+  const pw_points *p = &sim->points;
+  pw_real sum = 0.0;
+  for (pw_idx i = 0; i < p->n; i++) {
+    sum += p->mass[i] * (p->v[i] * p->v[i] + p->v[p->ld + i] * p->v[p->ld + i]);
+  }
+  return 0.5 * sim->measure * sum;
+}
+
 void pw_sim_report(const pw_sim *sim, pw_report *out)
 {
   *out = (pw_report){.threads = sim->threads,

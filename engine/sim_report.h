@@ -15,4 +15,7 @@
  */
 void pw_body_centre(const pw_sim *sim, int body, pw_real *out);
 
+/** @brief Kinetic energy of all points, whole body; J. Steps keep it in sim->energy. */
+pw_real pw_kinetic_energy(const pw_sim *sim);
+
 #endif /* PW_ENGINE_SIM_REPORT_H */

@@ -173,7 +173,7 @@ static void print_results(run *r)
   }
 }
 
-static void print_end(run *r, const char *word)
+static void print_end(run *r, const char *word, bool with_results)
 {
   char wall[32];
   pw_report report;
@@ -182,7 +182,7 @@ static void print_end(run *r, const char *word)
   pw_real made = (pw_real)(report.steps - r->first_step);
   pw_real speed = report.wall_s > 0.0 ? (pw_real)report.points * made / report.wall_s : 0.0;
   pw_progress_clear(&r->progress);
-  if (!r->options->quiet) {
+  if (with_results && !r->options->quiet) {
     print_results(r);
   }
   pw_duration_text(pw_wall_clock() - r->wall_first_s, wall, sizeof wall);
@@ -208,9 +208,9 @@ static pw_status write_summary(run *r, const char *word, const char *error)
 static pw_exit fail(run *r, pw_status status)
 {
   char text[2 * PW_WARNING_TEXT];
-
   const char *code = pw_status_text(status), *detail = pw_error_text();
   bool said = strstr(detail, code) != NULL;
+
   snprintf(text, sizeof text, "%s%s%s", said ? "" : code, said ? "" : ": ", detail);
   pw_progress_clear(&r->progress);
   fprintf(r->err, "error: %s\n", text);
@@ -220,7 +220,7 @@ static pw_exit fail(run *r, pw_status status)
   if (pw_run_folder_holds_checkpoint(&r->folder)) {
     fprintf(r->err, "the last good checkpoint is %s\n", r->folder.checkpoint);
   }
-  print_end(r, "failed");
+  print_end(r, "failed", false);
   return PW_EXIT_FAILED;
 }
 
@@ -234,7 +234,7 @@ static pw_status finish(run *r, bool stopped)
 static pw_exit execute(run *r)
 {
   if (r->resumed && at_end(r) && pw_run_folder_finished(&r->folder)) {
-    print_end(r, "finished before");
+    print_end(r, "finished before", true);
     return PW_EXIT_FINISHED;
   }
   pw_status status = pw_run_folder_lock(&r->folder, &r->lock);
@@ -254,7 +254,7 @@ static pw_exit execute(run *r)
   if (status != PW_OK) {
     return fail(r, status);
   }
-  print_end(r, stopped ? "stopped" : "finished");
+  print_end(r, stopped ? "stopped" : "finished", true);
   return stopped ? PW_EXIT_STOPPED : PW_EXIT_FINISHED;
 }
 

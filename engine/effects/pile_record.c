@@ -110,8 +110,7 @@ static pw_real base_stress(const pw_sim *sim, const pile_record *c)
   for (pw_idx k = 0; k < c->base.n; k++) {
     pw_idx i = p->slot[c->base.id[k]];
     vol += p->vol[i];
-    sum += p->vol[i] * p->stress[p->ld + i] -
-           p->mass[i] * weight * (p->x[p->ld + i] - c->base_y);
+    sum += p->vol[i] * p->stress[p->ld + i] - p->mass[i] * weight * (p->x[p->ld + i] - c->base_y);
   }
   return vol > 0.0 ? 1e-3 * sum / vol : 0.0;
 }
@@ -338,8 +337,7 @@ static pw_status create(pw_sim *sim, const void *param, void **ctx)
   PW_TRY(choose(sim, c, is_base, &c->base));
   PW_REQUIRE(c->tip.n > 0, PW_ERR_SCENE, "no point of body '%s' near its tip", pile->name);
   PW_REQUIRE(c->far.n > 0, PW_ERR_SCENE, "far_field_x_m = %g m: no soil point beyond it", c->far_x);
-  PW_REQUIRE(c->base.n > 0, PW_ERR_SCENE, "base_y_m = %g m: no soil point above it",
-             c->base_y);
+  PW_REQUIRE(c->base.n > 0, PW_ERR_SCENE, "base_y_m = %g m: no soil point above it", c->base_y);
   PW_TRY(pw_mem_alloc("pile record: heights", c->far.n, sizeof(pw_real), &c->far_y));
   for (pw_idx k = 0; k < c->far.n; k++) {
     c->far_y[k] = sim->points.x[sim->points.ld + sim->points.slot[c->far.id[k]]];
