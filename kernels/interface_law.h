@@ -27,7 +27,9 @@ typedef struct pw_pair {
 
 /**
  * @brief Project a slave on the line through a segment (eq. 2.42, 2.43); xi is not clamped.
- * @param[in] xs,x1,x2 [2] slave and ends of the segment, x1 != x2; m
+ * @param[in] xs [2] slave; m
+ * @param[in] x1 [2] first end of the segment; m
+ * @param[in] x2 [2] second end, not at the first; m
  */
 static inline pw_pair pw_pair_project(const pw_real *xs, const pw_real *x1, const pw_real *x2)
 {
@@ -51,7 +53,8 @@ static inline pw_pair pw_pair_project(const pw_real *xs, const pw_real *x1, cons
  * C_n is the gradient of the gap, C_t that of the slave's place along the segment, l grad xi: both
  * balance in force and in moment. Beyond one arm of overlap the couple P is held at its value
  * there, so that a short segment cannot be torn apart by it.
- * @param[out] cn,ct [6]; -
+ * @param[out] cn [6] C_n; -
+ * @param[out] ct [6] C_t; -
  */
 static inline void pw_pair_vectors(const pw_pair *p, pw_real *cn, pw_real *ct)
 {

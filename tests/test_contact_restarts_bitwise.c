@@ -37,7 +37,7 @@ static void check(test_contact kind, int geometry)
     pw_contact_penalty_param *p = (void *)pw_scene_find_effect(&s, "contact_penalty");
     p->split_factor = 1.1;
   }
-  pw_sim *sim = test_sim(&s, 2);
+  pw_sim *sim = test_sim(&s, 1);
   steps(sim, 60);
   assert_ok(pw_restart_write(half, sim));
   steps(sim, 40);
