@@ -265,6 +265,9 @@ pw_status pw_interface_archive(pw_interface *line, const char *name, pw_archive 
   }
   snprintf(path, sizeof path, "%s/count", name);
   PW_TRY(ar->index(ar, path, &line->n, 1));
+  PW_REQUIRE(line->n >= 2 && line->n <= line->capacity, PW_ERR_FILE,
+             "%s holds %d interface nodes, the scene has room for 2 to %d", path, line->n,
+             line->capacity);
   snprintf(path, sizeof path, "%s/nodes", name);
   PW_TRY(ar->real(ar, path, line->packed, (pw_off)line->capacity * PW_INTERFACE_REALS));
   snprintf(path, sizeof path, "%s/marks", name);

@@ -65,6 +65,7 @@ typedef struct pw_refine_rule {
 /** What pw_interface_refine() has done; added to. */
 typedef struct pw_refine_counts {
   pw_off splits, merges, refused;
+  pw_real released; /**< energy of the springs of nodes taken out; J per radian or metre */
 } pw_refine_counts;
 
 /**

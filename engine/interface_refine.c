@@ -87,8 +87,15 @@ static void give(const pw_interface_node *from, pw_real part, pw_interface_node 
   to->mass = sum;
 }
 
-static void take_out(pw_interface *line, pw_idx k)
+/* Energy of a node's springs. */
+static pw_real spring_energy(const pw_touch *t)
 {
+  return 0.5 * (t->stiff_n * t->overlap * t->overlap + t->stiff_t * t->slip * t->slip);
+}
+
+static pw_real take_out(pw_interface *line, pw_idx k)
+{
+  pw_real released = line->node[k].touch.owner >= 0 ? spring_energy(&line->node[k].touch) : 0.0;
   pw_interface_node *p = &line->node[before(line, k)], *q = &line->node[after(line, k)];
   pw_real lp = distance(p, &line->node[k]), lq = distance(&line->node[k], q), l = lp + lq;
   pw_real part = l > 0.0 ? lq / l : 0.5;
@@ -96,17 +103,18 @@ static void take_out(pw_interface *line, pw_idx k)
   give(&line->node[k], 1.0 - part, q);
   memmove(&line->node[k], &line->node[k + 1], (size_t)(line->n - k - 1) * sizeof line->node[0]);
   line->n--;
+  return released;
 }
 
 /* Take out that end of the short segment k that changes the line less. */
-static bool merge(pw_interface *line, pw_idx k, pw_real longest)
+static bool merge(pw_interface *line, pw_idx k, pw_real longest, pw_real *released)
 {
   pw_idx next = pw_interface_next(line, k);
   pw_real ca = removal_cost(line, k, longest), cb = removal_cost(line, next, longest);
   if (ca < 0.0 && cb < 0.0) {
     return false;
   }
-  take_out(line, ca >= 0.0 && (cb < 0.0 || ca < cb) ? k : next);
+  *released += take_out(line, ca >= 0.0 && (cb < 0.0 || ca < cb) ? k : next);
   return true;
 }
 
@@ -127,7 +135,7 @@ void pw_interface_refine(pw_interface *line, const pw_refine_rule *rule, pw_refi
       k++; /* both halves stay as they are until the next call */
     } else if (l > rule->longest) {
       counts->refused++;
-    } else if (l < rule->shortest && merge(line, k, rule->longest)) {
+    } else if (l < rule->shortest && merge(line, k, rule->longest, &counts->released)) {
       counts->merges++;
     }
   }

@@ -3,6 +3,7 @@
 
 #include <string.h>
 
+#include "engine/core/key.h"
 #include "engine/core/mem.h"
 
 pw_status pw_nodes_create(pw_idx nnode, int nfield, pw_nodes *out)
@@ -39,7 +40,7 @@ void pw_nodes_momentum(pw_nodes *nodes, pw_real dt, pw_real cut_off)
   for (pw_off k = 0; k < count; k++) {
     pw_real *r = rec + k * PW_NODE;
     pw_real active = r[PW_NODE_MASS] > cut_off ? 1.0 : 0.0;
-    pw_real inv = active / pw_max(r[PW_NODE_MASS], cut_off);
+    pw_real inv = active / pw_max(r[PW_NODE_MASS], PW_TINY);
     for (int a = 0; a < 2; a++) {
       pw_real v = r[PW_NODE_VEL + a] * inv;
       r[PW_NODE_VEL + a] = v + dt * r[PW_NODE_FORCE + a] * inv;

@@ -130,6 +130,21 @@ void pw_points_permute(pw_points *p, const pw_idx *from, pw_real *scratch)
   }
 }
 
+/* Numbers read from a file must be a permutation: slot is its inverse. */
+static pw_status check_ids(pw_points *p)
+{
+  for (pw_idx i = 0; i < p->n; i++) {
+    p->slot[i] = -1;
+  }
+  for (pw_idx i = 0; i < p->n; i++) {
+    bool valid = p->id[i] >= 0 && p->id[i] < p->n && p->slot[p->id[i]] < 0;
+    PW_REQUIRE(valid, PW_ERR_FILE, "point number %d is not one of %d, or stands twice", p->id[i],
+               p->n);
+    p->slot[p->id[i]] = i;
+  }
+  return PW_OK;
+}
+
 pw_status pw_points_archive(pw_points *p, pw_archive *ar)
 {
   for (int id = 0; id < PW_FIELD_COUNT; id++) {
@@ -142,10 +157,5 @@ pw_status pw_points_archive(pw_points *p, pw_archive *ar)
     pw_off count = (pw_off)f.ncomp * p->ld;
     PW_TRY(f.is_real ? ar->real(ar, name, f.array, count) : ar->index(ar, name, f.array, count));
   }
-  for (pw_idx i = 0; ar->loading && i < p->n; i++) {
-    PW_REQUIRE(p->id[i] >= 0 && p->id[i] < p->n, PW_ERR_FILE, "point number %d of %d", p->id[i],
-               p->n);
-    p->slot[p->id[i]] = i;
-  }
-  return PW_OK;
+  return ar->loading ? check_ids(p) : PW_OK;
 }

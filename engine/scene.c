@@ -65,7 +65,7 @@ const pw_key pw_scene_keys_output[] = {
   {"snapshot_every_s", PW_KEY_REAL, AT(output.snapshot_every_s), 0, 1e12, "0", NULL, NULL,
    "time between ParaView files; 0: only at the start and the end"},
   {"checkpoint_every_s", PW_KEY_REAL, AT(output.checkpoint_every_s), 0, 1e12, "0", NULL, NULL,
-   "time between checkpoints; 0: only at the end or when interrupted"},
+   "simulated time between checkpoints besides those at the start, the end and every 30 s of waiting"},
   {"paraview", PW_KEY_BOOL, AT(output.paraview), 0, 0, "true", NULL, NULL,
    "write ParaView files"},
   {"pictures", PW_KEY_BOOL, AT(output.pictures), 0, 0, "true", NULL, NULL,

@@ -78,7 +78,7 @@ typedef struct pw_scene {
     pw_real domain_limit_cells;  /**< half diagonal of a domain at most; 0: no limit */
     pw_real mass_cut_off;        /**< of the mass of a full cell's node; nodes below are passive */
     pw_real noise_damping_per_s; /**< rate at which points' velocities approach the grid's */
-    int block_elements;          /**< elements in a METIS block; 0: chosen from the threads */
+    int block_elements;          /**< elements in a METIS block; 0: chosen from the grid */
   } method;
   struct {
     pw_real history_every_s, snapshot_every_s, checkpoint_every_s;

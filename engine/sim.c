@@ -182,7 +182,8 @@ static pw_status create_blocks(pw_sim *sim, pw_real reach_cells)
       weight[e]++;
     }
   }
-  /* One cell beyond the longest domain lets points drift before they must be sorted again. */
+  /* Domains reach as far as their limit; two cells at least, so that points with small domains may
+   * drift before they must be sorted again. */
   pw_idx reach = (pw_idx)ceil(reach_cells - 1e-9);
   reach = reach < 2 ? 2 : reach;
   pw_idx per_block = sim->scene.method.block_elements;

@@ -80,7 +80,9 @@ const pw_points *pw_sim_points(const pw_sim *sim);
 /** @brief Fill @p out. */
 void pw_sim_report(const pw_sim *sim, pw_report *out);
 
-/** @brief Columns of history.csv: time, step, energies, each body's centre of mass, effects'. */
+/** @brief Columns of history.csv: time, step, energies, each body's centre of mass, effects'.
+ *  Contact forces are means since the last call, so a call between those of the run loop changes
+ *  the next row. */
 void pw_sim_history(const pw_sim *sim, pw_record *row);
 
 /** @brief Items of summary.json's `results`. */

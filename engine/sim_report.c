@@ -119,19 +119,62 @@ void pw_sim_results(const pw_sim *sim, pw_record *out)
   }
 }
 
-/* Numbers that tell one scene's checkpoint from another's. */
+static void hash_bytes(uint64_t *hash, const void *data, size_t size)
+{
+  const unsigned char *byte = data;
+  for (size_t k = 0; k < size; k++) {
+    *hash = (*hash ^ byte[k]) * UINT64_C(0x100000001b3); /* FNV-1a */
+  }
+}
+
+/* Everything of a scene that results depend on, so not its end, outputs, title and file. */
+static uint64_t scene_hash(const pw_scene *s)
+{
+  uint64_t hash = UINT64_C(0xcbf29ce484222325);
+  const pw_real time[3] = {s->time.cfl, s->time.dt_max_s, s->time.dt_s};
+  hash_bytes(&hash, &s->geometry, sizeof s->geometry);
+  hash_bytes(&hash, &s->grid, sizeof s->grid);
+  hash_bytes(&hash, time, sizeof time);
+  hash_bytes(&hash, &s->method.basis, sizeof s->method.basis);
+  hash_bytes(&hash, &s->method.update, sizeof s->method.update);
+  hash_bytes(&hash, &s->method.domain_limit_cells, sizeof(pw_real));
+  hash_bytes(&hash, &s->method.mass_cut_off, sizeof(pw_real));
+  hash_bytes(&hash, &s->method.noise_damping_per_s, sizeof(pw_real));
+  for (int m = 0; m < s->nmaterial; m++) {
+    hash_bytes(&hash, s->material[m].model->name, strlen(s->material[m].model->name));
+    hash_bytes(&hash, s->material[m].param, sizeof s->material[m].param);
+  }
+  for (int e = 0; e < s->neffect; e++) {
+    hash_bytes(&hash, s->effect[e].type->name, strlen(s->effect[e].type->name));
+    hash_bytes(&hash, s->effect[e].param, sizeof s->effect[e].param);
+  }
+  return hash;
+}
+
+/* What tells one scene's checkpoint from another's: sizes, and a hash of the parameters. */
 static pw_status archive_identity(pw_sim *sim, pw_archive *ar)
 {
-  const pw_idx want[8] = {
-      sim->points.n,      sim->mesh.nnode,    sim->mesh.nelem,         sim->nbody,
-      sim->blocks.nblock, sim->points.nstate, sim->scene.method.basis, sim->scene.neffect};
-  pw_idx have[8];
+  const uint64_t hash = scene_hash(&sim->scene);
+  const pw_idx want[10] = {sim->points.n,
+                           sim->mesh.nnode,
+                           sim->mesh.nelem,
+                           sim->nbody,
+                           sim->blocks.nblock,
+                           sim->points.nstate,
+                           sim->scene.method.basis,
+                           sim->scene.neffect,
+                           (pw_idx)(hash & INT32_MAX),
+                           (pw_idx)(hash >> 33)};
+  pw_idx have[10];
   memcpy(have, want, sizeof have);
-  PW_TRY(ar->index(ar, "sim/identity", have, 8));
-  PW_REQUIRE(memcmp(have, want, sizeof have) == 0, PW_ERR_FILE,
+  PW_TRY(ar->index(ar, "sim/identity", have, 10));
+  PW_REQUIRE(memcmp(have, want, 8 * sizeof have[0]) == 0, PW_ERR_FILE,
              "the checkpoint belongs to another scene: it has %d points, %d nodes and %d effects, "
              "the scene %d, %d and %d",
              have[0], have[1], have[7], want[0], want[1], want[7]);
+  PW_REQUIRE(memcmp(have, want, sizeof have) == 0, PW_ERR_FILE,
+             "the checkpoint belongs to a scene with other parameters; only time.end_s and outputs "
+             "may differ");
   return PW_OK;
 }
 
@@ -167,6 +210,24 @@ static pw_status archive_numbers(pw_sim *sim, pw_archive *ar)
   return PW_OK;
 }
 
+/* Ranges and elements read from a file must fit the arrays they index. */
+static pw_status check_ranges(const pw_sim *sim)
+{
+  const pw_points *p = &sim->points;
+  const pw_off ranges = (pw_off)sim->blocks.nblock * sim->nbody;
+  const pw_idx *start = sim->blocks.point_start;
+  bool valid = start[0] == 0 && start[ranges] == p->n;
+  for (pw_off k = 0; k < ranges; k++) {
+    valid = valid && start[k] <= start[k + 1];
+  }
+  for (pw_idx i = 0; i < p->n; i++) {
+    valid = valid && p->body[i] >= 0 && p->body[i] < sim->nbody && p->home[i] >= 0 &&
+            p->home[i] < sim->mesh.nelem;
+  }
+  PW_REQUIRE(valid, PW_ERR_FILE, "the checkpoint's blocks of points are damaged");
+  return PW_OK;
+}
+
 pw_status pw_sim_archive(pw_sim *sim, pw_archive *ar)
 {
   PW_TRY(archive_identity(sim, ar));
@@ -177,6 +238,7 @@ pw_status pw_sim_archive(pw_sim *sim, pw_archive *ar)
   PW_TRY(ar->index(ar, "sim/point_start", sim->blocks.point_start,
                    (pw_off)sim->blocks.nblock * sim->nbody + 1));
   PW_TRY(pw_points_archive(&sim->points, ar));
+  PW_TRY(ar->loading ? check_ranges(sim) : PW_OK);
   for (int k = 0; k < sim->scene.neffect; k++) {
     if (sim->scene.effect[k].type->archive) {
       PW_TRY(sim->scene.effect[k].type->archive(sim, sim->ctx[k], ar));

@@ -31,6 +31,7 @@ typedef struct pw_schedule {
 typedef struct pw_block_sums {
   pw_real strain_work; /**< J per radian or metre, this step */
   pw_real kinetic;     /**< J per radian or metre, now */
+  pw_real settled;     /**< taken out by the noise damping; J per radian or metre, this step */
   pw_real speed_max;   /**< max of c + |v|; m/s */
   pw_off limited, rebuilt;
   pw_idx bad; /**< first point whose stress or domain failed, or -1 */
@@ -89,7 +90,6 @@ struct pw_sim {
   pw_material_counts material;
   pw_real *limit;   /**< [n by id] half diagonal allowed to each domain; m; NULL without CPDI */
   pw_idx *from;     /**< [n] sort scratch */
-  pw_idx *elem;     /**< [n] sort scratch */
   pw_real *scratch; /**< [ld] */
 };
 

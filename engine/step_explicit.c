@@ -68,7 +68,8 @@ static pw_status stress_first(pw_sim *sim, double *clock)
   pw_update_pass pass = {sim, PW_NODE_VEL, false, true};
   pw_for_blocks(&sim->blocks, sim->threads, pw_block_update, &pass);
   lap(sim, PW_TIMER_G2P_STRESS, clock);
-  return pw_update_collect(sim);
+  PW_TRY(pw_update_collect(sim));
+  return sim->sort_needed ? pw_update_sort(sim) : PW_OK; /* domains have changed: mind the halo */
 }
 
 /* MUSL: the updated points' momentum back on the grid. */
@@ -119,7 +120,7 @@ pw_status pw_step_explicit(pw_sim *sim)
     status = pw_schedule_run(sim, PW_STAGE_END);
   }
   if (status == PW_OK) {
-    status = pw_update_energy_guard(sim);
+    status = pw_update_energy(sim);
   }
   lap(sim, PW_TIMER_EFFECTS, &clock);
   return status;

@@ -50,11 +50,11 @@ pw_status pw_update_collect(pw_sim *sim);
 pw_status pw_update_check(pw_sim *sim);
 
 /**
- * @brief Stop a run whose energy balance shows more energy than was ever supplied: the mark of a
- *        step beyond the stability limit. Call at the end of a step.
+ * @brief Close the books of a step, and stop a run whose energy balance shows more energy than
+ *        was ever supplied: the mark of a step beyond the stability limit.
  * @return PW_OK; PW_RETRY_DIVERGED.
  */
-pw_status pw_update_energy_guard(pw_sim *sim);
+pw_status pw_update_energy(pw_sim *sim);
 
 /** @brief Sort points into their blocks and locate their vertices anew.
  *  @return PW_OK; PW_ERR_POINT_LOST. */

@@ -42,6 +42,7 @@ static const pw_kernels instances[] = {
    p2g_momentum_##tag,                                                                             \
    p2g_force_##tag,                                                                                \
    g2p_velocity_##tag,                                                                             \
+   g2p_settle_##tag,                                                                               \
    p2g_remap_##tag,                                                                                \
    g2p_gradient_##tag,                                                                             \
    p2g_surface_##tag},

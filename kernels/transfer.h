@@ -3,7 +3,8 @@
  * @file kernels/transfer.h
  * @brief Point-grid transfer kernels, specialised for each geometry and basis (layer 1).
  *
- * Each row of kernels/instances.def compiles kernels/transfer_body.inc once with literal sizes.
+ * Each row of kernels/instances.def compiles kernels/transfer_cpdi.inc or transfer_tensor.inc once
+ * with literal sizes.
  * A vertex is where a basis samples the grid's shape functions: the four corners of a CPDI domain
  * (Sadeghirad, Brannon, Burghardt 2011, with the r-weighted corner weights of axisymmetry), or the
  * point itself (linear MPM, uGIMP). All kernels work on a contiguous range of points of one body;
@@ -61,10 +62,12 @@ typedef struct pw_kernels {
   void (*p2g_momentum)(const pw_transfer *t, pw_real *rec, pw_idx first, pw_idx last);
   /** Scatter minus the internal force only (USF). */
   void (*p2g_force)(const pw_transfer *t, pw_real *rec, pw_idx first, pw_idx last);
-  /** Gather velocity increments (slot FORCE): v += sum S_ip dv_i; then, when @p pic > 0, move v by
-   *  that fraction towards the grid's velocity (slot VEL), sum S_ip v_i. */
-  void (*g2p_velocity)(const pw_transfer *t, const pw_real *rec, pw_real pic, pw_idx first,
-                       pw_idx last);
+  /** Gather velocity increments (slot FORCE): v += sum S_ip dv_i. */
+  void (*g2p_velocity)(const pw_transfer *t, const pw_real *rec, pw_idx first, pw_idx last);
+  /** Move velocities by the fraction @p pic towards the grid's (slot VEL): v += pic (sum S_ip v_i
+   *  - v). Returns the kinetic energy that this takes out; J. */
+  pw_real (*g2p_settle)(const pw_transfer *t, const pw_real *rec, pw_real pic, pw_idx first,
+                        pw_idx last);
   /** Scatter the momentum of the updated points into slot REMAP (MUSL). */
   void (*p2g_remap)(const pw_transfer *t, pw_real *rec, pw_idx first, pw_idx last);
   /** Gather dt times the gradient of the velocity in slot @p slot for points [first, last), at

@@ -69,6 +69,16 @@ typedef struct vertex_value {
     RECORD_ADD(r_ + (pw_off)((row) + 1) * NODE, (w)[3], value, nhigh);                             \
   } while (0)
 
+/** v += pic (u - v) for point i; returns the kinetic energy taken out. */
+static inline pw_real settle(const pw_transfer *t, pw_idx i, pw_real pic, pw_real ux, pw_real uy)
+{
+  pw_real *vx = &t->v[i], *vy = &t->v[t->ld + i];
+  pw_real before = *vx * *vx + *vy * *vy;
+  *vx += pic * (ux - *vx);
+  *vy += pic * (uy - *vy);
+  return 0.5 * t->mass[i] * (before - *vx * *vx - *vy * *vy);
+}
+
 /** Row of an element number; exact below 2^52 / cells. */
 static inline pw_idx element_row(pw_idx e, pw_real inv_cells)
 {

@@ -97,6 +97,7 @@ static void penalty_rolls(void **state)
   pw_real exact = 10.0 * sin(0.25 * PI) * 2.0 / 3.0;
   motion m = show("penalty, no slip", roll(TEST_PENALTY, 45.0, 0.495), exact);
   assert_relative(m.x, 0.5 * exact, 0.06);
+  assert_relative(m.acceleration, exact, 0.06);
 }
 
 static void penalty_slips(void **state)

@@ -117,7 +117,9 @@ static pw_status move_lines(pw_sim *sim, void *ctx)
     }
     pw_interface_move(line[side], c->rec[side], musl ? PW_NODE_REMAP : PW_NODE_VEL, sim->dt);
   }
+  c->counts.released = 0.0;
   pw_interface_refine(&c->slave, &c->rule, &c->counts);
+  sim->energy.contact += sim->measure * c->counts.released;
   return PW_OK;
 }
 
@@ -188,7 +190,7 @@ static pw_status archive(pw_sim *sim, void *ctx, pw_archive *ar)
   PW_TRY(pw_interface_archive(&c->slave, "contact_penalty/slave", ar));
   PW_TRY(pw_interface_archive(&c->master, "contact_penalty/master", ar));
   PW_TRY(ar->offset(ar, "contact_penalty/counts", count, 5));
-  c->counts = (pw_refine_counts){count[0], count[1], count[2]};
+  c->counts = (pw_refine_counts){count[0], count[1], count[2], 0.0};
   c->reduced = count[3];
   c->detached = count[4];
   return PW_OK;
