@@ -1,11 +1,11 @@
 #!/bin/bash
 # SPDX-License-Identifier: GPL-3.0-or-later
 # A run that was interrupted or killed goes on to the same bytes as one that was not.
-# PW_KILLS: how many times to kill (3; 10 with PW_NIGHTLY=1); PW_SCENE: another scene (absolute path), to PW_END_S
-# with checkpoints every PW_CHECKPOINT_S of simulated time.
+# PW_KILLS: how many times to kill (10); PW_SCENE: another scene (absolute path), to PW_END_S with
+# checkpoints every PW_CHECKPOINT_S of simulated time.
 . "$(dirname "$0")/harness.sh"
 scene=${PW_SCENE:-$scenes/small_penalty.yaml}
-kills=${PW_KILLS:-$([ "${PW_NIGHTLY:-0}" = 1 ] && echo 10 || echo 3)}
+kills=${PW_KILLS:-10}
 options="$plain --threads 2 --set time.end_s=${PW_END_S:-0.4}"
 options="$options --set output.checkpoint_every_s=${PW_CHECKPOINT_S:-0.01}"
 
@@ -34,6 +34,8 @@ for signal in INT TERM; do
   expect_status $signal stopped
   cp $signal/checkpoint.h5 before
   expect_exit 2 "$program" run "$scene" $options --set method.block_elements=1 --out $signal --resume
+  expect_same before $signal/checkpoint.h5
+  expect_exit 2 "$program" run "$scene" $options --set gravity.acceleration_m_s2=5 --out $signal --resume
   expect_same before $signal/checkpoint.h5
   expect_exit 0 "$program" run "$scene" $options --out $signal --resume
   expect_same whole/checkpoint.h5 $signal/checkpoint.h5

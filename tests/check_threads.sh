@@ -12,4 +12,14 @@ for scene in "$scenes"/small_*.yaml; do
     expect_same ${name}_1/history.csv ${name}_$threads/history.csv
   done
 done
+
+# The driven pile itself, with a short gravity stage and a blow.
+pile="--set gravity.ramp_s=0.01 --set hammer.start_s=0.01 --set time.end_s=0.03"
+for case in penalty frictional; do
+  for threads in 1 2 3 4; do
+    expect_exit 0 "$program" run "$source_dir/cases/hammered_pile/$case.yaml" $plain $pile \
+      --threads $threads --out ${case}_$threads
+    expect_same ${case}_1/checkpoint.h5 ${case}_$threads/checkpoint.h5
+  done
+done
 done_checking
