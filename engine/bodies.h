@@ -29,6 +29,8 @@ pw_real pw_domain_area(const pw_real *half4);
  * @brief Outline of a body as a closed polyline, counter-clockwise (body to the left), from its
  *        exact shape: rectangle, circle, pile (in axisymmetry the half at r >= 0, starting and
  *        ending on the axis and not closed).
+ * A closed outline does not repeat its first vertex. A piece belongs to the tip when both its ends
+ * do; the base of a flat pile is its tip.
  * @param[in]  segment largest length of a piece; m
  * @param[out] xy  [2 * max] pairs; NULL to count
  * @param[out] tip [max] true for a vertex on a pile's tip part; may be NULL

@@ -41,7 +41,8 @@ typedef struct pw_key {
   pw_real lo, hi;       /**< accepted range, inclusive, for each number */
   const char *fallback; /**< default as it would be written; NULL: the key is required */
   const char *choices;  /**< for PW_KEY_CHOICE: "musl|usl|usf", in index order; else NULL */
-  const char *needs;    /**< name of an effect that must be in the scene, or NULL */
+  const char *needs;    /**< effect that must be in the scene, or "sibling=a|b": a choice that a key
+                             of the same section must have; or NULL */
   const char *meaning;  /**< one line for `pilewright keys` */
 } pw_key;
 
