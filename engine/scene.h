@@ -19,6 +19,8 @@ typedef enum pw_geometry { PW_PLANE, PW_AXI } pw_geometry;
 typedef enum pw_basis { PW_LINEAR, PW_UGIMP, PW_CPDI } pw_basis;
 typedef enum pw_update { PW_MUSL, PW_USL, PW_USF } pw_update;
 typedef enum pw_shape { PW_SHAPE_RECTANGLE, PW_SHAPE_DISC, PW_SHAPE_PILE } pw_shape;
+/** How a body is described: by material points, or as a structure (engine/structure.h). */
+typedef enum pw_body_kind { PW_BODY_POINTS, PW_BODY_RIGID, PW_BODY_ROD } pw_body_kind;
 typedef enum pw_tip { PW_TIP_FLAT, PW_TIP_ROUNDED, PW_TIP_CONICAL } pw_tip;
 
 enum {
@@ -45,6 +47,7 @@ typedef struct pw_scene_refine {
 typedef struct pw_scene_body {
   char name[PW_NAME];
   int material;                  /**< index into pw_scene.material */
+  int kind;                      /**< pw_body_kind */
   int shape;                     /**< pw_shape */
   pw_real x_m[2], y_m[2];        /**< rectangle: extent */
   pw_real centre_m[2], radius_m; /**< disc, and the pile's radius */

@@ -9,6 +9,7 @@
 #include "engine/effect.h"
 #include "engine/nodes.h"
 #include "engine/sim.h"
+#include "engine/structure.h"
 #include "kernels/transfer.h"
 #include "partition/blocks.h"
 
@@ -63,6 +64,9 @@ struct pw_sim {
   pw_transfer transfer; /**< the arrays above, as kernels see them */
   int nbody;
   pw_body body[PW_MAX_BODIES];
+  int nstructure;
+  pw_structure *structure;                 /**< [nstructure] bodies without points */
+  pw_structure *structure_of[PW_MAX_BODIES]; /**< by body; NULL: it has points */
   pw_schedule schedule;
   void *ctx[PW_MAX_EFFECTS]; /**< contexts, same order as scene.effect */
 

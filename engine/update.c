@@ -3,6 +3,7 @@
 
 #include <math.h>
 #include <stdio.h>
+#include <string.h>
 
 #include "engine/assemble.h"
 #include "engine/domain.h"
@@ -197,6 +198,9 @@ static void stress_batch(pw_sim *sim, const pw_body *body, batch *s, pw_idx firs
   }
   if (body->model->update(body->param, &args) != PW_OK) {
     set_bad(sums, first + args.bad, PW_RETRY_STRESS);
+  }
+  if (p->wave_speed) {
+    memcpy(p->wave_speed + first, s->wave_speed, (size_t)n * sizeof *p->wave_speed);
   }
   sum_batch(sim, s, first, n, sums);
 }
