@@ -58,7 +58,7 @@ static pw_status check_refine(const pw_scene_body *b)
              "body %s: only a rectangle can be refined in boxes", b->name);
   PW_REQUIRE(b->nrefine >= 0 && b->nrefine <= PW_MAX_REFINE, PW_ERR_SCENE,
              "body %s: %d refine boxes, at most %d", b->name, b->nrefine, (int)PW_MAX_REFINE);
-  for (int r = 0; r < b->nrefine; r++) {
+  for (int r = 0; r < b->nrefine && b->points_per_cell == 0; r++) {
     pw_real size = b->refine[r].point_size_m;
     PW_REQUIRE(size > 0 && size <= b->point_size_m * (1 + same), PW_ERR_SCENE,
                "body %s: refine box %d asks for points of %g m in a body of points of %g m",
@@ -72,8 +72,11 @@ static pw_status check_refine(const pw_scene_body *b)
 
 static pw_status check_shape(const pw_scene_body *b, int geometry)
 {
-  PW_REQUIRE(b->point_size_m > 0 && isfinite(b->point_size_m), PW_ERR_SCENE,
-             "body %s: points of %g m", b->name, b->point_size_m);
+  PW_REQUIRE((b->point_size_m > 0 && isfinite(b->point_size_m)) || b->points_per_cell > 0 ||
+                 b->kind != PW_BODY_POINTS,
+             PW_ERR_SCENE, "body %s: points of %g m", b->name, b->point_size_m);
+  PW_REQUIRE(b->points_per_cell == 0 || b->shape == PW_SHAPE_RECTANGLE, PW_ERR_SCENE,
+             "body %s: points_per_cell is for rectangles", b->name);
   if (b->shape == PW_SHAPE_RECTANGLE) {
     PW_REQUIRE(b->x_m[1] > b->x_m[0] && b->y_m[1] > b->y_m[0], PW_ERR_SCENE,
                "body %s: the rectangle [%g, %g] x [%g, %g] m is empty", b->name, b->x_m[0],
@@ -82,6 +85,9 @@ static pw_status check_shape(const pw_scene_body *b, int geometry)
   }
   PW_REQUIRE(b->radius_m > 0 && isfinite(b->radius_m), PW_ERR_SCENE, "body %s: a radius of %g m",
              b->name, b->radius_m);
+  if (b->shape == PW_SHAPE_RING) {
+    PW_TRY(pw_body_check_ring(b));
+  }
   if (b->shape == PW_SHAPE_PILE) {
     pw_real tip = pw_pile_tip_height(b);
     PW_REQUIRE(b->length_m > 0 && isfinite(b->length_m), PW_ERR_SCENE, "body %s: a length of %g m",
@@ -100,10 +106,17 @@ static pw_status fill(const pw_scene *scene, pw_domain_list *list)
   for (int i = 0; i < scene->nbody; i++) {
     const pw_scene_body *b = &scene->body[i];
     list->body = i;
-    if (b->shape == PW_SHAPE_RECTANGLE) {
+    if (b->kind != PW_BODY_POINTS) {
+      continue;
+    }
+    if (b->points_per_cell > 0) {
+      PW_TRY(pw_body_fill_cells(b, list->mesh, list));
+    } else if (b->shape == PW_SHAPE_RECTANGLE) {
       PW_TRY(pw_body_fill_rectangle(b, list));
     } else if (b->shape == PW_SHAPE_DISC) {
       PW_TRY(pw_body_fill_disc(b, list));
+    } else if (b->shape == PW_SHAPE_RING) {
+      PW_TRY(pw_body_fill_ring(b, list));
     } else {
       PW_TRY(pw_body_fill_pile(b, (pw_geometry)scene->geometry, list));
     }
@@ -132,17 +145,27 @@ static pw_status check_corners(const pw_scene *scene, const pw_domains *d)
   return PW_OK;
 }
 
-static pw_status create(const pw_scene *scene, pw_domains *d)
+static pw_status create(const pw_scene *scene, const pw_mesh *mesh, pw_domains *d)
 {
-  pw_domain_list list = {.out = NULL};
+  pw_domain_list list = {.mesh = mesh};
   PW_TRY(fill(scene, &list));
   d->n = (pw_idx)list.n;
   PW_TRY(pw_mem_alloc("domain centres", 2 * list.n, sizeof *d->x, &d->x));
   PW_TRY(pw_mem_alloc("domain half vectors", 4 * list.n, sizeof *d->half, &d->half));
   PW_TRY(pw_mem_alloc("domain bodies", list.n, sizeof *d->body, &d->body));
-  list = (pw_domain_list){.out = d};
+  list = (pw_domain_list){.out = d, .mesh = mesh};
   PW_TRY(fill(scene, &list));
   return check_corners(scene, d);
+}
+
+static bool by_cells(const pw_scene *scene)
+{
+  for (int i = 0; i < scene->nbody; i++) {
+    if (scene->body[i].points_per_cell > 0) {
+      return true;
+    }
+  }
+  return false;
 }
 
 pw_status pw_domains_create(const pw_scene *scene, pw_domains *out)
@@ -151,7 +174,12 @@ pw_status pw_domains_create(const pw_scene *scene, pw_domains *out)
     PW_TRY(check_shape(&scene->body[i], scene->geometry));
   }
   pw_domains d = {.n = 0};
-  pw_status s = create(scene, &d);
+  pw_mesh mesh = {.nelem = 0};
+  pw_status s = by_cells(scene) ? pw_mesh_create_grid(&scene->grid, &mesh) : PW_OK;
+  if (s == PW_OK) {
+    s = create(scene, &mesh, &d);
+  }
+  pw_mesh_destroy(&mesh);
   if (s != PW_OK) {
     pw_domains_destroy(&d);
     return s;

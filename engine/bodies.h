@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /**
  * @file engine/bodies.h
- * @brief Material points of a scene's bodies: graded rectangles, discs, piles (layer 3).
+ * @brief Material points of a scene's bodies: graded rectangles, discs, piles, rings (layer 3).
  */
 #ifndef PW_ENGINE_BODIES_H
 #define PW_ENGINE_BODIES_H
@@ -27,8 +27,8 @@ pw_real pw_domain_area(const pw_real *half4);
 
 /**
  * @brief Outline of a body as a closed polyline, counter-clockwise (body to the left), from its
- *        exact shape: rectangle, circle, pile (in axisymmetry the half at r >= 0, starting and
- *        ending on the axis and not closed).
+ *        exact shape: rectangle, circle, outer circle of a whole ring, part of a ring, pile (in
+ *        axisymmetry the half at r >= 0, starting and ending on the axis and not closed).
  * A closed outline does not repeat its first vertex. A piece belongs to the tip when both its ends
  * do; the base of a flat pile is its tip.
  * @param[in]  segment largest length of a piece; m
@@ -38,5 +38,11 @@ pw_real pw_domain_area(const pw_real *half4);
  */
 int pw_body_outline(const pw_scene *scene, int body, pw_real segment, pw_real *xy, bool *tip,
                     int max);
+
+/** @brief Smallest box around a ring or the part of one: {left, right, bottom, top}; m. */
+void pw_body_ring_box(const pw_scene_body *b, pw_real box[4]);
+
+/** @brief Radii and angles of a ring. @return PW_OK; PW_ERR_SCENE. */
+pw_status pw_body_check_ring(const pw_scene_body *b);
 
 #endif /* PW_ENGINE_BODIES_H */

@@ -1,10 +1,10 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /*
  * Outlines. A closed line is not ended by its first vertex again. A rectangle starts at its lower
- * left corner, a disc and a pile at their lowest point; so the half pile of axisymmetry runs from
- * the tip's centre along the tip, up the shaft and back to the axis along the head. Vertices lie on
- * the exact curve. A piece of a pile belongs to the tip when both its ends do; the vertex between
- * tip and shaft does.
+ * left corner, a ring at its first angle, a disc and a pile at their lowest point; so the half pile
+ * of axisymmetry runs from the tip's centre along the tip, up the shaft and back to the axis along
+ * the head. Vertices lie on the exact curve. A piece of a pile belongs to the tip when both its ends
+ * do; the vertex between tip and shaft does.
  */
 #include "engine/bodies_shapes.h"
 
@@ -70,6 +70,33 @@ static void disc(line *l, const pw_scene_body *b)
   }
 }
 
+/* A whole ring: its outer circle. Part of one: along the first cut, the outer arc, the second cut
+ * and back along the inner arc. */
+static void ring(line *l, const pw_scene_body *b)
+{
+  pw_real from = b->angle_deg[0] * pi / 180, angle = b->angle_deg[1] * pi / 180 - from;
+  bool part = angle < 2 * pi * (1 - 1e-9);
+  for (int side = 0; side < (part ? 2 : 1); side++) {
+    const pw_real r[2] = {side == 0 ? b->inner_radius_m : b->radius_m,
+                          side == 0 ? b->radius_m : b->inner_radius_m};
+    pw_real start = side == 0 ? from : from + angle, turn = side == 0 ? angle : -angle;
+    pw_real pieces = pw_max(ceil(4 * angle / pi - 1e-9), pw_body_pieces(angle * r[1], l->segment));
+    if (!(pieces < most_vertices)) {
+      l->n = INFINITY;
+      return;
+    }
+    const pw_real c = cos(start), s = sin(start), *o = b->centre_m;
+    if (part) {
+      add_straight(l, (pw_real[]){o[0] + r[0] * c, o[1] + r[0] * s},
+                   (pw_real[]){o[0] + r[1] * c, o[1] + r[1] * s}, false, false);
+    }
+    for (pw_real k = 0; k < pieces; k++) {
+      pw_real at = start + turn * k / pieces;
+      add_vertex(l, o[0] + r[1] * cos(at), o[1] + r[1] * sin(at), false);
+    }
+  }
+}
+
 /* The tip from its lowest point to the shaft (side 1) or back (side -1), without the last vertex.
  * Equal steps of the ellipse's angle: no piece is longer than the longer half axis times a step. */
 static void tip_part(line *l, const pw_scene_body *b, pw_real x, int side)
@@ -124,6 +151,8 @@ int pw_body_outline(const pw_scene *scene, int body, pw_real segment, pw_real *x
     rectangle(&l, b);
   } else if (b->shape == PW_SHAPE_DISC) {
     disc(&l, b);
+  } else if (b->shape == PW_SHAPE_RING) {
+    ring(&l, b);
   } else {
     pile(&l, b, scene->geometry == PW_AXI);
   }

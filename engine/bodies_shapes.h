@@ -11,9 +11,10 @@
 
 /** Domains being counted or written. */
 typedef struct pw_domain_list {
-  pw_domains *out; /**< NULL: only count */
-  pw_off n;        /**< domains so far */
-  pw_idx body;     /**< body of the domains added now */
+  pw_domains *out;     /**< NULL: only count */
+  pw_off n;            /**< domains so far */
+  pw_idx body;         /**< body of the domains added now */
+  const pw_mesh *mesh; /**< the grid, for points_per_cell */
 } pw_domain_list;
 
 /** @brief Add the domain of centre @p x [2] and half vectors r1 = (a, b), r2 = (c, d); m. */
@@ -25,7 +26,11 @@ void pw_domain_add(pw_domain_list *list, const pw_real *x, const pw_real *half4)
  */
 pw_status pw_body_fill_rectangle(const pw_scene_body *b, pw_domain_list *list);
 pw_status pw_body_fill_disc(const pw_scene_body *b, pw_domain_list *list);
+pw_status pw_body_fill_ring(const pw_scene_body *b, pw_domain_list *list);
 pw_status pw_body_fill_pile(const pw_scene_body *b, pw_geometry geometry, pw_domain_list *list);
+
+/** @brief The rectangle of a body with points_per_cell. @return as the others. */
+pw_status pw_body_fill_cells(const pw_scene_body *b, const pw_mesh *mesh, pw_domain_list *list);
 
 /** @brief Refuse a body of more than 2^30 points. @return PW_OK; PW_ERR_SCENE. */
 pw_status pw_body_check_count(const pw_scene_body *b, pw_real points);

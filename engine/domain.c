@@ -19,6 +19,34 @@ static bool limit_diagonals(pw_real r[4], pw_real limit)
   return true;
 }
 
+/* The same with lengths measured in the cells at the domain's centre; limit in cells. */
+static bool limit_in_cells(pw_real r[4], const pw_real *cell, pw_real limit)
+{
+  const pw_real inv[2] = {1.0 / cell[0], 1.0 / cell[1]};
+  pw_real s[4] = {r[0] * inv[0], r[1] * inv[1], r[2] * inv[0], r[3] * inv[1]};
+  if (!limit_diagonals(s, limit)) {
+    return false;
+  }
+  for (int k = 0; k < 4; k++) {
+    r[k] = s[k] * cell[k % 2];
+  }
+  return true;
+}
+
+/* Limits domain i; @p limit becomes the largest half diagonal of a square there, in metres. */
+static bool limit_domain(const pw_sim *sim, pw_idx i, pw_real r[4], pw_real *limit)
+{
+  const pw_points *p = &sim->points;
+  *limit = sim->limit[p->id[i]];
+  if (!sim->mesh.graded) {
+    return limit_diagonals(r, *limit);
+  }
+  pw_real x[2] = {p->x[i], p->x[p->ld + i]}, cell[2], cells = *limit;
+  pw_mesh_size_at(&sim->mesh, x, cell);
+  *limit = cells * pw_min(cell[0], cell[1]);
+  return limit_in_cells(r, cell, cells);
+}
+
 /* Replace a degenerate domain by a square and its initial half-sides by F^-1 of it. */
 static void rebuild(pw_points *p, pw_idx i, pw_real area, pw_real limit, pw_real r[4])
 {
@@ -35,11 +63,49 @@ static void rebuild(pw_points *p, pw_idx i, pw_real area, pw_real limit, pw_real
   p->half0[3 * ld + i] = scale * f0;
 }
 
+/*
+ * Keep the ratio of the principal half-sides of a domain: above @p aspect the longer one is
+ * shortened and the shorter one lengthened until the area is what the point's volume needs, and the
+ * initial half-sides follow (F^-1 r). A domain that deforms on is reshaped a little in every step,
+ * so that it never jumps. True when reshaped.
+ */
+static bool reshape(pw_points *p, pw_idx i, pw_real area, pw_real aspect, pw_real r[4])
+{
+  const pw_idx ld = p->ld;
+  const pw_real det = r[0] * r[3] - r[1] * r[2];
+  const pw_real xx = r[0] * r[0] + r[2] * r[2], yy = r[1] * r[1] + r[3] * r[3];
+  const pw_real xy = r[0] * r[1] + r[2] * r[3];
+  if (!(det > 0.0) || xx + yy <= det * (aspect + 1.0 / aspect)) {
+    return false;
+  }
+  const pw_real mean = 0.5 * (xx + yy), dev = 0.5 * (xx - yy), root = sqrt(dev * dev + xy * xy);
+  const pw_real big = mean + root, small = det * det / big; /* squares of the half-sides */
+  const pw_real longer = sqrt(0.25 * area * aspect / big);
+  const pw_real shorter = sqrt(0.25 * area / aspect / small);
+  /* S = shorter I + (longer - shorter) u u^T, u the direction of the longer half-side. */
+  const pw_real c2 = 0.5 * (1.0 + dev / root), s2 = 0.5 * (1.0 - dev / root), cs = 0.5 * xy / root;
+  const pw_real sxx = shorter + (longer - shorter) * c2, syy = shorter + (longer - shorter) * s2;
+  const pw_real sxy = (longer - shorter) * cs;
+  pw_real f[4], n[4] = {sxx * r[0] + sxy * r[1], sxy * r[0] + syy * r[1], sxx * r[2] + sxy * r[3],
+                        sxy * r[2] + syy * r[3]};
+  for (int k = 0; k < 4; k++) {
+    f[k] = p->def_grad[k * ld + i];
+    r[k] = n[k];
+  }
+  const pw_real inv = 1.0 / (f[0] * f[3] - f[1] * f[2]);
+  for (int k = 0; k < 2; k++) {
+    p->half0[2 * k * ld + i] = inv * (f[3] * n[2 * k] - f[1] * n[2 * k + 1]);
+    p->half0[(2 * k + 1) * ld + i] = inv * (f[0] * n[2 * k + 1] - f[2] * n[2 * k]);
+  }
+  return true;
+}
+
 void pw_domain_convect(pw_sim *sim, pw_idx first, pw_idx n, pw_block_sums *sums)
 {
   pw_points *p = &sim->points;
   const pw_idx ld = p->ld;
   const bool axi = sim->scene.geometry == PW_AXI;
+  const pw_real aspect = sim->scene.method.domain_aspect_max;
   for (pw_idx i = first; i < first + n; i++) {
     const pw_real *f = p->def_grad + i, *r0 = p->half0 + i;
     pw_real r[4];
@@ -48,8 +114,11 @@ void pw_domain_convect(pw_sim *sim, pw_idx first, pw_idx n, pw_block_sums *sums)
       r[2 * k] = f[0] * x + f[ld] * y;
       r[2 * k + 1] = f[2 * ld] * x + f[3 * ld] * y;
     }
-    pw_real limit = sim->limit[p->id[i]];
-    if (limit_diagonals(r, limit)) {
+    pw_real limit;
+    if (aspect > 0.0 && reshape(p, i, axi ? p->vol[i] / p->x[i] : p->vol[i], aspect, r)) {
+      sums->reshaped++;
+    }
+    if (limit_domain(sim, i, r, &limit)) {
       sums->limited++;
       pw_real area = axi ? p->vol[i] / p->x[i] : p->vol[i];
       if (4.0 * (r[0] * r[3] - r[1] * r[2]) < PW_DOMAIN_DEGENERATE * area) {
@@ -61,4 +130,32 @@ void pw_domain_convect(pw_sim *sim, pw_idx first, pw_idx n, pw_block_sums *sums)
       p->half[k * ld + i] = r[k];
     }
   }
+}
+
+/* Cells from cell k of an axis outwards, one way, that are `length` long together. */
+static pw_idx cells_within(const pw_grid_axis *a, pw_idx k, int way, pw_real length)
+{
+  pw_idx n = 0;
+  pw_real sum = 0.0;
+  for (k += way; k >= 0 && k < a->cells && sum < length * (1.0 - 1e-9); k += way) {
+    sum += a->size[k];
+    n++;
+  }
+  return n;
+}
+
+pw_idx pw_domain_reach(const pw_mesh *mesh, pw_real limit)
+{
+  pw_idx reach = (pw_idx)ceil(limit - 1e-9);
+  for (int d = 0; d < 2 && mesh->graded; d++) {
+    const pw_grid_axis *a = &mesh->axis[d];
+    for (pw_idx k = 0; k < a->cells; k++) {
+      pw_real below = a->size[k > 0 ? k - 1 : k], above = a->size[k + 1 < a->cells ? k + 1 : k];
+      pw_real length = limit * pw_max(a->size[k], pw_max(below, above));
+      pw_idx down = cells_within(a, k, -1, length), up = cells_within(a, k, 1, length);
+      reach = down > reach ? down : reach;
+      reach = up > reach ? up : reach;
+    }
+  }
+  return reach < 2 ? 2 : reach;
 }

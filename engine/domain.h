@@ -17,10 +17,20 @@
  *
  * Homel, Brannon and Guilkey (Int. J. Numer. Meth. Engng 107, 2016): a half diagonal longer than
  * sim->limit of its point is shortened to it, the deformation gradient is kept for the material.
+ * On a graded grid half diagonals are measured in cells, x in widths and y in heights of the cell
+ * that holds the point now, so a domain shrinks with the cells it moves into and its corners stay
+ * within the halo (pw_domain_reach).
  * A domain that has become degenerate is replaced by the square of its material's area, within
  * the limit, and its initial half-sides by F^-1 r, so that it deforms on from there.
  * @param[in,out] sums counts of limited and rebuilt domains are added
  */
 void pw_domain_convect(pw_sim *sim, pw_idx first, pw_idx n, pw_block_sums *sums);
+
+/**
+ * @brief Cells of halo that hold every domain of at most @p limit cells, wherever its centre lies
+ *        in its cell or in a neighbour of it (a point may move on before it is sorted again).
+ * @return at least 2, so that points with small domains may drift
+ */
+pw_idx pw_domain_reach(const pw_mesh *mesh, pw_real limit);
 
 #endif /* PW_ENGINE_DOMAIN_H */

@@ -3,35 +3,143 @@
 
 #include <math.h>
 
-enum { MAX_CELLS = 1 << 15 }; /* along one axis: element and node numbers stay below 2^31 */
+#include "engine/core/key.h"
+#include "engine/core/mem.h"
+#include "engine/mesh_grade.h"
 
-static pw_status count_cells(pw_real size, pw_real cell, const char *axis, pw_idx *out)
+static void set_cells(pw_mesh *m, pw_idx nx, pw_idx ny)
 {
-  pw_real count = round(size / cell);
-  PW_REQUIRE(count >= 1.0 && fabs(size / cell - count) <= 1e-6, PW_ERR_SCENE,
-             "grid: size along %s, %g m, is not a whole number of cells of %g m", axis, size, cell);
-  PW_REQUIRE(count <= MAX_CELLS, PW_ERR_SCENE, "grid: %.0f cells along %s, at most %d are possible",
-             count, axis, MAX_CELLS);
-  *out = (pw_idx)count;
-  return PW_OK;
+  m->cells[0] = nx;
+  m->cells[1] = ny;
+  m->nodes[0] = nx + 1;
+  m->nodes[1] = ny + 1;
+  m->nelem = nx * ny;
+  m->nnode = m->nodes[0] * m->nodes[1];
 }
 
 pw_status pw_mesh_create(const pw_real *origin, const pw_real *size, pw_real cell, pw_mesh *out)
 {
-  PW_REQUIRE(cell > 0.0 && isfinite(cell), PW_ERR_SCENE, "grid: cell_m = %g is not a length", cell);
-  pw_mesh m = {.origin = {origin[0], origin[1]}, .cell = cell};
-  PW_TRY(count_cells(size[0], cell, "x", &m.cells[0]));
-  PW_TRY(count_cells(size[1], cell, "y", &m.cells[1]));
-  m.nodes[0] = m.cells[0] + 1;
-  m.nodes[1] = m.cells[1] + 1;
-  m.nelem = m.cells[0] * m.cells[1];
-  m.nnode = m.nodes[0] * m.nodes[1];
+  pw_grid grid = {.origin_m = {origin[0], origin[1]}, .size_m = {size[0], size[1]}, .cell_m = cell};
+  return pw_mesh_create_grid(&grid, out);
+}
+
+static void destroy_axis(pw_grid_axis *a)
+{
+  pw_mem_free(&a->node);
+  pw_mem_free(&a->size);
+  pw_mem_free(&a->inv);
+  pw_mem_free(&a->near);
+  pw_mem_free(&a->bin);
+}
+
+void pw_mesh_destroy(pw_mesh *m)
+{
+  destroy_axis(&m->axis[0]);
+  destroy_axis(&m->axis[1]);
+  m->graded = false;
+}
+
+/* Sizes of the cells, and the smallest of each and its neighbours. */
+static pw_real measure_cells(pw_grid_axis *a)
+{
+  pw_real smallest = a->node[a->cells] - a->node[0];
+  for (pw_idx k = 0; k < a->cells; k++) {
+    a->size[k] = a->node[k + 1] - a->node[k];
+    a->inv[k] = 1.0 / a->size[k];
+    smallest = pw_min(smallest, a->size[k]);
+  }
+  for (pw_idx k = 0; k < a->cells; k++) {
+    pw_real below = a->size[k > 0 ? k - 1 : 0];
+    pw_real above = a->size[k + 1 < a->cells ? k + 1 : k];
+    a->near[k] = pw_min(a->size[k], pw_min(below, above));
+  }
+  return smallest;
+}
+
+/* Bins with a margin of 1e-7 of their width on both sides, together narrower than any cell. */
+static pw_status fill_bins(pw_grid_axis *a, pw_real smallest)
+{
+  pw_real length = a->node[a->cells] - a->node[0];
+  a->nbin = (pw_idx)ceil(length / smallest * (1.0 + 1e-6)) + 1;
+  a->inv_bin = (pw_real)a->nbin / length;
+  PW_TRY(pw_mem_alloc("grid: bins", a->nbin, sizeof *a->bin, &a->bin));
+  pw_idx cell = 0;
+  for (pw_idx b = 0; b < a->nbin; b++) {
+    pw_real lower = a->node[0] + ((pw_real)b - 1e-7) / a->inv_bin;
+    while (cell + 1 < a->cells && lower >= a->node[cell + 1]) {
+      cell++;
+    }
+    a->bin[b] = (pw_grid_bin){cell + 1 < a->cells ? a->node[cell + 1] : PW_HUGE, cell};
+  }
+  return PW_OK;
+}
+
+static pw_status create_axis(const pw_grid *grid, int dir, const pw_axis_plan *plan,
+                             pw_grid_axis *a)
+{
+  a->cells = plan->fine + plan->outer[0] + plan->outer[1];
+  PW_TRY(pw_mem_alloc("grid: nodes", (pw_off)a->cells + 1, sizeof *a->node, &a->node));
+  PW_TRY(pw_mem_alloc("grid: sizes", a->cells, sizeof *a->size, &a->size));
+  PW_TRY(pw_mem_alloc("grid: inverse sizes", a->cells, sizeof *a->inv, &a->inv));
+  PW_TRY(pw_mem_alloc("grid: sizes nearby", a->cells, sizeof *a->near, &a->near));
+  pw_mesh_grade(grid, dir, plan, a->node);
+  return fill_bins(a, measure_cells(a));
+}
+
+pw_status pw_mesh_create_grid(const pw_grid *grid, pw_mesh *out)
+{
+  PW_REQUIRE(grid->cell_m > 0.0 && isfinite(grid->cell_m), PW_ERR_SCENE,
+             "grid: cell_m = %g is not a length", grid->cell_m);
+  pw_mesh m = {.origin = {grid->origin_m[0], grid->origin_m[1]},
+               .cell = grid->cell_m,
+               .graded = pw_grid_is_graded(grid)};
+  pw_axis_plan plan[2];
+  pw_status status = PW_OK;
+  for (int a = 0; a < 2; a++) {
+    PW_TRY(pw_mesh_plan(grid, a, &plan[a]));
+  }
+  for (int a = 0; a < 2 && m.graded && status == PW_OK; a++) {
+    status = create_axis(grid, a, &plan[a], &m.axis[a]);
+  }
+  if (status != PW_OK) {
+    pw_mesh_destroy(&m);
+    return status;
+  }
+  set_cells(&m, plan[0].fine + plan[0].outer[0] + plan[0].outer[1],
+            plan[1].fine + plan[1].outer[0] + plan[1].outer[1]);
   *out = m;
   return PW_OK;
 }
 
+pw_real pw_mesh_largest_cell(const pw_mesh *m)
+{
+  pw_real largest = m->cell;
+  for (int a = 0; a < 2 && m->graded; a++) {
+    for (pw_idx k = 0; k < m->cells[a]; k++) {
+      largest = pw_max(largest, m->axis[a].size[k]);
+    }
+  }
+  return largest;
+}
+
+static pw_idx locate_graded(const pw_mesh *m, const pw_real *x)
+{
+  pw_idx k[2];
+  for (int a = 0; a < 2; a++) {
+    const pw_grid_axis *axis = &m->axis[a];
+    if (!(x[a] >= axis->node[0] && x[a] <= axis->node[axis->cells])) {
+      return -1;
+    }
+    k[a] = pw_grid_axis_cell(axis, x[a]);
+  }
+  return k[1] * m->cells[0] + k[0];
+}
+
 pw_idx pw_mesh_locate(const pw_mesh *m, const pw_real *x)
 {
+  if (m->graded) {
+    return locate_graded(m, x);
+  }
   pw_idx k[2];
   for (int a = 0; a < 2; a++) {
     pw_real g = (x[a] - m->origin[a]) / m->cell;
@@ -43,15 +151,29 @@ pw_idx pw_mesh_locate(const pw_mesh *m, const pw_real *x)
   return k[1] * m->cells[0] + k[0];
 }
 
+/* Cell and place in it, 0..1, along an axis; a coordinate outside is moved to the edge. */
+static pw_idx place(const pw_mesh *m, int d, pw_real x, pw_real *local)
+{
+  if (m->graded) {
+    const pw_grid_axis *axis = &m->axis[d];
+    x = pw_grid_axis_clamp(axis, x);
+    pw_idx k = pw_grid_axis_cell(axis, x);
+    *local = (x - axis->node[k]) * axis->inv[k];
+    return k;
+  }
+  pw_real g = (x - m->origin[d]) / m->cell;
+  g = pw_min(g > 0.0 ? g : 0.0, (pw_real)m->cells[d]);
+  pw_idx k = (pw_idx)g < m->cells[d] ? (pw_idx)g : m->cells[d] - 1;
+  *local = g - (pw_real)k;
+  return k;
+}
+
 void pw_mesh_shape(const pw_mesh *m, const pw_real *x, pw_idx *node, pw_real *weight)
 {
   pw_idx k[2];
   pw_real a[2];
   for (int d = 0; d < 2; d++) {
-    pw_real g = (x[d] - m->origin[d]) / m->cell;
-    g = pw_min(g > 0.0 ? g : 0.0, (pw_real)m->cells[d]);
-    k[d] = (pw_idx)g < m->cells[d] ? (pw_idx)g : m->cells[d] - 1;
-    a[d] = g - (pw_real)k[d];
+    k[d] = place(m, d, x[d], &a[d]);
   }
   node[0] = k[1] * m->nodes[0] + k[0];
   node[1] = node[0] + 1;

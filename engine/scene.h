@@ -11,6 +11,7 @@
 
 #include "engine/core/key.h"
 #include "engine/core/status.h"
+#include "engine/mesh.h"
 #include "kernels/material.h"
 
 typedef struct pw_effect pw_effect;
@@ -18,7 +19,7 @@ typedef struct pw_effect pw_effect;
 typedef enum pw_geometry { PW_PLANE, PW_AXI } pw_geometry;
 typedef enum pw_basis { PW_LINEAR, PW_UGIMP, PW_CPDI } pw_basis;
 typedef enum pw_update { PW_MUSL, PW_USL, PW_USF } pw_update;
-typedef enum pw_shape { PW_SHAPE_RECTANGLE, PW_SHAPE_DISC, PW_SHAPE_PILE } pw_shape;
+typedef enum pw_shape { PW_SHAPE_RECTANGLE, PW_SHAPE_DISC, PW_SHAPE_PILE, PW_SHAPE_RING } pw_shape;
 /** How a body is described: by material points, or as a structure (engine/structure.h). */
 typedef enum pw_body_kind { PW_BODY_POINTS, PW_BODY_RIGID, PW_BODY_ROD } pw_body_kind;
 typedef enum pw_tip { PW_TIP_FLAT, PW_TIP_ROUNDED, PW_TIP_CONICAL } pw_tip;
@@ -41,6 +42,7 @@ typedef struct pw_scene_material {
 typedef struct pw_scene_refine {
   pw_real x_m[2], y_m[2];
   pw_real point_size_m;
+  int points_per_cell; /**< of a body with points_per_cell, in each direction */
 } pw_scene_refine;
 
 /** One entry of `bodies:`. */
@@ -50,11 +52,17 @@ typedef struct pw_scene_body {
   int kind;                      /**< pw_body_kind */
   int shape;                     /**< pw_shape */
   pw_real x_m[2], y_m[2];        /**< rectangle: extent */
-  pw_real centre_m[2], radius_m; /**< disc, and the pile's radius */
+  pw_real centre_m[2], radius_m; /**< disc, ring, and the pile's radius */
+  pw_real inner_radius_m;        /**< ring */
+  pw_real angle_deg[2];          /**< ring: from, to; anticlockwise from the x axis */
   pw_real tip_y_m, length_m;     /**< pile: height of its lowest point, whole length */
   int tip;                       /**< pw_tip */
   pw_real tip_length_m;          /**< pile: height of the rounded or conical part */
-  pw_real point_size_m;          /**< edge of the largest domains */
+  pw_real point_size_m;          /**< edge of the largest domains; 0 with points_per_cell */
+  int points_per_cell;           /**< domains in a cell in each direction; 0: by point_size_m */
+  pw_real mass_kg;               /**< rigid: of the whole body; 0: from density and volume */
+  int rod_elements;              /**< rod: elements along its length */
+  pw_real surface_segment_m;     /**< rigid, rod: pieces of its surface; 0: chosen */
   pw_real velocity_m_s[2];
   int nrefine;
   pw_scene_refine refine[PW_MAX_REFINE];
@@ -70,15 +78,14 @@ typedef struct pw_scene {
   char title[PW_NAME];
   char file[256]; /**< where it was read from, for reports; may be "" */
   int geometry;   /**< pw_geometry */
-  struct {
-    pw_real origin_m[2], size_m[2], cell_m;
-  } grid;
+  pw_grid grid;
   struct {
     pw_real end_s, cfl, dt_max_s, dt_s; /**< dt_s > 0 fixes the step */
   } time;
   struct {
     int basis, update;           /**< pw_basis, pw_update */
     pw_real domain_limit_cells;  /**< half diagonal of a domain at most; 0: no limit */
+    pw_real domain_aspect_max;   /**< longest to shortest half-side of a domain; 0: no limit */
     pw_real mass_cut_off;        /**< of the mass of a full cell's node; nodes below are passive */
     pw_real noise_damping_per_s; /**< rate at which points' velocities approach the grid's */
     int block_elements;          /**< elements in a METIS block; 0: chosen from the grid */

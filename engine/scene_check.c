@@ -1,7 +1,10 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "engine/scene_check.h"
 
+#include "engine/bodies.h"
 #include "engine/effect.h"
+#include "engine/mesh_grade.h"
+#include "engine/structure_sim.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -12,30 +15,32 @@ enum { PATH_SIZE = PW_NAME + 16 };
 /* Largest numbers of nodes and of points in a body: indices and sizes in bytes stay small. */
 static const pw_real largest_count = 2.0e8;
 
-/* Most cells along one axis (engine/mesh.c). */
-static const pw_real largest_side = 1 << 15;
-
 /* Lengths that differ by less than this part of a cell are the same. */
 static const pw_real same = 1e-9;
 
-static pw_status check_side(const pw_scene *s, int axis)
+static pw_status check_grading(const pw_scene *s)
 {
-  pw_real cells = s->grid.size_m[axis] / s->grid.cell_m;
-  PW_REQUIRE(cells >= 1 - 1e-6 && fabs(cells - nearbyint(cells)) < 1e-6, PW_ERR_SCENE,
-             "size_m: the %s %g m is not a whole number of cells of %g m",
-             axis == 0 ? "width" : "height", s->grid.size_m[axis], s->grid.cell_m);
+  const pw_grid *g = &s->grid;
+  const bool graded = pw_grid_is_graded(g);
+  PW_REQUIRE(graded || !(g->growth > 1), PW_ERR_SCENE,
+             "growth = %g needs a fine zone: fine_x_m or fine_y_m", g->growth);
+  PW_REQUIRE(graded || !(g->cell_max_m > 0), PW_ERR_SCENE,
+             "cell_max_m = %g m needs a fine zone: fine_x_m or fine_y_m", g->cell_max_m);
+  PW_REQUIRE(!graded || s->method.basis != PW_UGIMP, PW_ERR_SCENE,
+             "%s: basis ugimp needs a uniform grid",
+             g->fine_x_m[0] < g->fine_x_m[1] ? "fine_x_m" : "fine_y_m");
   return PW_OK;
 }
 
 pw_status pw_scene_check_grid(const pw_scene *s)
 {
-  pw_real nodes =
-      (s->grid.size_m[0] / s->grid.cell_m + 1) * (s->grid.size_m[1] / s->grid.cell_m + 1);
-  PW_TRY(check_side(s, 0));
-  PW_TRY(check_side(s, 1));
-  PW_REQUIRE(pw_max(s->grid.size_m[0], s->grid.size_m[1]) <= (largest_side + 0.5) * s->grid.cell_m,
-             PW_ERR_SCENE, "cell_m = %g m: more than %g cells along one side", s->grid.cell_m,
-             largest_side);
+  pw_real nodes = 1;
+  PW_TRY(check_grading(s));
+  for (int a = 0; a < 2; a++) {
+    pw_axis_plan plan;
+    PW_TRY(pw_mesh_plan(&s->grid, a, &plan));
+    nodes *= (pw_real)plan.fine + (pw_real)plan.outer[0] + (pw_real)plan.outer[1] + 1;
+  }
   PW_REQUIRE(s->method.basis != PW_UGIMP ||
                  pw_min(s->grid.size_m[0], s->grid.size_m[1]) > 1.5 * s->grid.cell_m,
              PW_ERR_SCENE, "size_m: ugimp needs at least two cells in each direction");
@@ -89,6 +94,9 @@ static void body_box(const pw_scene *s, const pw_scene_body *b, pw_real box[4])
     box[2] = b->centre_m[1] - b->radius_m;
     box[3] = b->centre_m[1] + b->radius_m;
     break;
+  case PW_SHAPE_RING:
+    pw_body_ring_box(b, box);
+    break;
   case PW_SHAPE_PILE:
     box[0] = s->geometry == PW_AXI ? b->centre_m[0] : b->centre_m[0] - b->radius_m;
     box[1] = b->centre_m[0] + b->radius_m;
@@ -104,6 +112,9 @@ static pw_status check_shape(const pw_scene_body *b)
     PW_REQUIRE(b->x_m[0] < b->x_m[1], PW_ERR_SCENE, "x_m must be written [left, right]");
     PW_REQUIRE(b->y_m[0] < b->y_m[1], PW_ERR_SCENE, "y_m must be written [bottom, top]");
   }
+  if (b->shape == PW_SHAPE_RING) {
+    return pw_body_check_ring(b);
+  }
   if (b->shape == PW_SHAPE_PILE && b->tip != PW_TIP_FLAT) {
     pw_real tip = b->tip_length_m > 0 ? b->tip_length_m : b->radius_m;
     PW_REQUIRE(tip <= b->length_m, PW_ERR_SCENE,
@@ -112,29 +123,66 @@ static pw_status check_shape(const pw_scene_body *b)
   return PW_OK;
 }
 
+/* Points stay in the grid; a structure needs none, but what is wholly outside meets nothing. */
 static pw_status check_inside(const pw_scene *s, const pw_scene_body *b, const pw_real box[4])
 {
+  const bool points = b->kind == PW_BODY_POINTS;
   static const char *const side[] = {"left", "right", "bottom", "top"};
   pw_real slack = same * s->grid.cell_m;
   PW_REQUIRE(s->geometry != PW_AXI || box[0] >= -slack, PW_ERR_SCENE,
              "body '%s' crosses the axis x = 0 of the axisymmetric scene", b->name);
   for (int k = 0; k < 4; k++) {
     pw_real lower = s->grid.origin_m[k / 2], upper = lower + s->grid.size_m[k / 2];
-    PW_REQUIRE(box[k] >= lower - slack && box[k] <= upper + slack, PW_ERR_SCENE,
-               "body '%s' leaves the grid: its %s is at %g m, the grid reaches from %g m to %g m",
-               b->name, side[k], box[k], lower, upper);
+    const bool over = box[k] > upper + slack, under = box[k] < lower - slack;
+    PW_REQUIRE(points ? !over && !under : !(k % 2 == 0 ? over : under), PW_ERR_SCENE,
+               "body '%s' %s the grid: its %s is at %g m, the grid reaches from %g m to %g m",
+               b->name, points ? "leaves" : "is outside", side[k], box[k], lower, upper);
   }
   return PW_OK;
 }
 
+/* Each body and each of its boxes says in one of two ways how large its domains are. */
+static pw_status check_ways(const pw_scene_body *b)
+{
+  const bool by_cells = b->points_per_cell > 0;
+  PW_REQUIRE(by_cells || b->point_size_m > 0 || b->kind != PW_BODY_POINTS, PW_ERR_SCENE,
+             "missing key 'point_size_m'%s",
+             b->shape == PW_SHAPE_RECTANGLE ? " or 'points_per_cell'" : "");
+  PW_REQUIRE(!by_cells || !(b->point_size_m > 0), PW_ERR_SCENE,
+             "points_per_cell and point_size_m exclude each other");
+  PW_REQUIRE(!by_cells || b->shape == PW_SHAPE_RECTANGLE, PW_ERR_SCENE,
+             "points_per_cell is for rectangles");
+  for (int r = 0; r < b->nrefine; r++) {
+    PW_REQUIRE((b->refine[r].point_size_m > 0) == !by_cells &&
+                   (b->refine[r].points_per_cell > 0) == by_cells,
+               PW_ERR_SCENE, "refine: entry %d must give %s, as the body does", r,
+               by_cells ? "points_per_cell" : "point_size_m");
+    PW_REQUIRE(b->refine[r].points_per_cell >= b->points_per_cell, PW_ERR_SCENE,
+               "refine: points_per_cell = %d of entry %d is less than the body's %d",
+               b->refine[r].points_per_cell, r, b->points_per_cell);
+  }
+  return PW_OK;
+}
+
+static pw_real largest_cell(const pw_scene *s)
+{
+  pw_axis_plan plan[2] = {{.largest = s->grid.cell_m}, {.largest = s->grid.cell_m}};
+  for (int a = 0; a < 2 && pw_grid_is_graded(&s->grid); a++) {
+    if (pw_mesh_plan(&s->grid, a, &plan[a]) != PW_OK) {
+      return s->grid.cell_m; /* reported with the grid */
+    }
+  }
+  return pw_max(plan[0].largest, plan[1].largest);
+}
+
 static pw_status check_sizes(const pw_scene *s, const pw_scene_body *b, const pw_real box[4])
 {
-  pw_real smallest = b->point_size_m;
+  pw_real smallest = b->point_size_m, cell = largest_cell(s);
   PW_REQUIRE(b->nrefine == 0 || b->shape == PW_SHAPE_RECTANGLE, PW_ERR_SCENE,
              "refine: only a rectangle can be refined in boxes");
-  PW_REQUIRE(b->point_size_m <= 4 * s->grid.cell_m, PW_ERR_SCENE,
-             "point_size_m = %g m is larger than 4 cells (%g m)", b->point_size_m,
-             4 * s->grid.cell_m);
+  PW_TRY(check_ways(b));
+  PW_REQUIRE(b->point_size_m <= 4 * cell, PW_ERR_SCENE,
+             "point_size_m = %g m is larger than 4 cells (%g m)", b->point_size_m, 4 * cell);
   for (int r = 0; r < b->nrefine; r++) {
     const pw_scene_refine *box_r = &b->refine[r];
     PW_REQUIRE(box_r->x_m[0] < box_r->x_m[1] && box_r->y_m[0] < box_r->y_m[1], PW_ERR_SCENE,
@@ -145,7 +193,7 @@ static pw_status check_sizes(const pw_scene *s, const pw_scene_body *b, const pw
     smallest = pw_min(smallest, box_r->point_size_m);
   }
   pw_real points = (box[1] - box[0]) / smallest * ((box[3] - box[2]) / smallest);
-  PW_REQUIRE(points <= largest_count, PW_ERR_SCENE,
+  PW_REQUIRE(b->points_per_cell > 0 || points <= largest_count, PW_ERR_SCENE,
              "point_size_m: domains of %g m may give %.3g points, at most %.3g can be handled",
              smallest, points, largest_count);
   return PW_OK;
@@ -166,7 +214,7 @@ pw_status pw_scene_check_body(const pw_scene *s, int i)
   body_box(s, b, box);
   PW_TRY(check_shape(b));
   PW_TRY(check_inside(s, b, box));
-  return check_sizes(s, b, box);
+  return b->kind == PW_BODY_POINTS ? check_sizes(s, b, box) : pw_structure_check(s, i);
 }
 
 /* Value of a key that names a body, in the parameters of effect @p e. */
@@ -175,17 +223,6 @@ static int body_of(const pw_scene_effect *e, const pw_key *key)
   int b;
   memcpy(&b, e->param + key->offset, sizeof b);
   return b;
-}
-
-static pw_status check_initial_stress(const pw_scene *s, int body)
-{
-  for (int b = 0; b < s->nbody; b++) {
-    const pw_material *model = s->material[s->body[b].material].model;
-    PW_REQUIRE((body >= 0 && body != b) || model->takes_initial_stress, PW_ERR_SCENE,
-               "body: '%s' is of %s, which cannot start from a prescribed stress", s->body[b].name,
-               model->name);
-  }
-  return PW_OK;
 }
 
 static pw_status check_bodies_of(const pw_scene *s, const pw_scene_effect *e)
@@ -197,9 +234,13 @@ static pw_status check_bodies_of(const pw_scene *s, const pw_scene_effect *e)
     int body = body_of(e, k);
     PW_REQUIRE(body < s->nbody && (body >= 0 || k->fallback || k->needs), PW_ERR_SCENE,
                "%s: no such body", k->name);
-    if (strcmp(e->type->name, "initial_stress") == 0 && strcmp(k->name, "body") == 0) {
-      PW_TRY(check_initial_stress(s, body));
-    }
+    bool without = e->type->structure_key && strcmp(e->type->structure_key, k->name) == 0;
+    PW_REQUIRE(body < 0 || s->body[body].kind == PW_BODY_POINTS || without, PW_ERR_SCENE,
+               "%s: '%s' has no points, which %s needs%s", k->name, s->body[body].name,
+               e->type->name,
+               e->type->own_velocity_fields && !e->type->structure_key
+                   ? ": contact_corner takes it as the master"
+                   : "");
   }
   return PW_OK;
 }

@@ -15,13 +15,15 @@
 #define PW_KERNELS_TRANSFER_H
 
 #include "engine/core/types.h"
+#include "kernels/grid_axis.h"
 
 /** The grid and point arrays a kernel works on; everything borrowed. Layouts: engine/points.h,
  *  engine/nodes.h. */
 typedef struct pw_transfer {
   pw_real origin[2]; /**< lower left corner of the grid; m */
-  pw_real cell;      /**< m */
+  pw_real cell;      /**< of a uniform grid; m */
   pw_idx cells[2];
+  const pw_grid_axis *axis;  /**< [2] of a graded grid; NULL: uniform */
   pw_idx row;                /**< nodes along x: node above node k is k + row */
   pw_idx reach;              /**< cells from the home element within which vertices may lie */
   pw_idx ld;                 /**< leading dimension of the point arrays */
@@ -83,6 +85,10 @@ typedef struct pw_kernels {
 
 /** @brief The row for a geometry and basis (pw_geometry, pw_basis), or NULL. */
 const pw_kernels *pw_kernels_find(int geometry, int basis);
+
+/** @brief The row for a graded grid (pw_transfer.axis is set): where it differs, its kernels look
+ *  up the sizes of cells. NULL for uGIMP, whose means over a domain need equal cells. */
+const pw_kernels *pw_kernels_find_graded(int geometry, int basis);
 
 /** @brief The @p i-th row, or NULL past the end. */
 const pw_kernels *pw_kernels_at(int i);
