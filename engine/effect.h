@@ -35,13 +35,26 @@ typedef struct pw_hook {
   pw_hook_fn fn;
 } pw_hook; /**< a list ends with {0, NULL} */
 
+/** A list of mappings inside an effect's section; each entry fills one row of an array in the
+ *  parameter struct. */
+typedef struct pw_effect_rows {
+  const char *name;    /**< key of the list */
+  const char *meaning; /**< one line for `pilewright keys` */
+  const pw_key *keys;  /**< offsets into a row */
+  size_t count;        /**< offset of the int that counts the rows */
+  size_t first, size;  /**< offset of the first row; bytes of a row */
+  int max;
+} pw_effect_rows;
+
 struct pw_effect {
-  const char *name;         /**< key of its section in the scene file */
-  const char *brief;        /**< one line for `pilewright list` */
-  bool many;                /**< the section is a list; each entry is one instance */
-  bool own_velocity_fields; /**< asks for one velocity field per body (contact) */
-  uint64_t point_fields;    /**< bits of pw_field_id to allocate */
-  const pw_key *keys;       /**< offsets into its parameter struct */
+  const char *name;           /**< key of its section in the scene file */
+  const char *brief;          /**< one line for `pilewright list` */
+  bool many;                  /**< the section is a list; each entry is one instance */
+  bool own_velocity_fields;   /**< asks for one velocity field per body (contact) */
+  const char *structure_key;  /**< its key that may name a body without points; NULL: none may */
+  uint64_t point_fields;      /**< bits of pw_field_id to allocate */
+  const pw_key *keys;         /**< offsets into its parameter struct */
+  const pw_effect_rows *rows; /**< a list in its section, or NULL */
   const pw_hook *hooks;
   /** @brief Rules across keys; the section's name is added by the caller. May be NULL.
    *  @return PW_OK or PW_ERR_SCENE. */

@@ -8,20 +8,12 @@
 #include "engine/assemble.h"
 #include "engine/bodies.h"
 #include "engine/core/mem.h"
+#include "engine/domain.h"
 #include "engine/schedule.h"
 #include "engine/sim_report.h"
 #include "engine/step_explicit.h"
+#include "engine/structure_sim.h"
 #include "engine/update.h"
-
-static bool has_contact(const pw_scene *scene)
-{
-  for (int e = 0; e < scene->neffect; e++) {
-    if (scene->effect[e].type->own_velocity_fields) {
-      return true;
-    }
-  }
-  return false;
-}
 
 /* The body a contact effect's key `master` names. */
 static int contact_master(const pw_scene_effect *effect)
@@ -46,6 +38,21 @@ static int body_field(const pw_scene *scene, int body)
   return 0;
 }
 
+static bool has_points(const pw_scene *scene, int body)
+{
+  return scene->body[body].kind == PW_BODY_POINTS;
+}
+
+/* Velocity fields: two when both sides of a contact have points. */
+static int field_count(const pw_scene *scene)
+{
+  int count = 1;
+  for (int b = 0; b < scene->nbody; b++) {
+    count = has_points(scene, b) && body_field(scene, b) == 1 ? 2 : count;
+  }
+  return count;
+}
+
 static void create_bodies(pw_sim *sim)
 {
   const pw_scene *scene = &sim->scene;
@@ -55,7 +62,7 @@ static void create_bodies(pw_sim *sim)
     sim->body[b] = (pw_body){.name = scene->body[b].name,
                              .model = m->model,
                              .param = m->param,
-                             .field = body_field(scene, b)};
+                             .field = has_points(scene, b) ? body_field(scene, b) : 0};
   }
 }
 
@@ -79,7 +86,7 @@ static int state_count(const pw_scene *scene)
   int count = 0;
   for (int b = 0; b < scene->nbody; b++) {
     const pw_scene_material *m = &scene->material[scene->body[b].material];
-    int n = m->model->nstate ? m->model->nstate(m->param) : 0;
+    int n = m->model->nstate && has_points(scene, b) ? m->model->nstate(m->param) : 0;
     count = n > count ? n : count;
   }
   return count;
@@ -128,11 +135,33 @@ static void fill_points(pw_sim *sim, const pw_domains *d)
   }
 }
 
-static pw_real half_diagonal(const pw_domains *d, pw_idx i)
+/* Longer half diagonal with lengths along x and y in the given units; m. */
+static pw_real half_diagonal(const pw_domains *d, pw_idx i, const pw_real unit[2])
 {
   pw_real ax = d->half[i] + d->half[2 * d->n + i], ay = d->half[d->n + i] + d->half[3 * d->n + i];
   pw_real bx = d->half[i] - d->half[2 * d->n + i], by = d->half[d->n + i] - d->half[3 * d->n + i];
+  ax /= unit[0], bx /= unit[0];
+  ay /= unit[1], by /= unit[1];
   return sqrt(pw_max(ax * ax + ay * ay, bx * bx + by * by));
+}
+
+/* On a graded grid everything is in cells where the domain is; half of four cells at the start is
+ * what a uniform grid allows (scene_check.c). */
+static pw_status create_graded_limits(pw_sim *sim, const pw_domains *d, pw_real *largest)
+{
+  pw_real cells = sim->scene.method.domain_limit_cells;
+  for (pw_idx i = 0; i < d->n; i++) {
+    pw_real x[2] = {d->x[i], d->x[d->n + i]}, cell[2];
+    pw_mesh_size_at(&sim->mesh, x, cell);
+    pw_real start = half_diagonal(d, i, cell) * (1.0 + 1e-12);
+    PW_REQUIRE(start <= 2.9, PW_ERR_SCENE,
+               "body %s: a domain at (%g, %g) m is %.3g cells long from corner to corner: give "
+               "points_per_cell, or refine it there",
+               sim->scene.body[d->body[i]].name, x[0], x[1], 2.0 * start);
+    sim->limit[i] = cells > 0.0 ? pw_max(start, cells) : 1e30;
+    *largest = pw_max(*largest, cells > 0.0 ? sim->limit[i] : 4.0);
+  }
+  return PW_OK;
 }
 
 /* Allowed half diagonal of each CPDI domain: the scene's limit, or what it has at the start if that
@@ -145,8 +174,11 @@ static pw_status create_limits(pw_sim *sim, const pw_domains *d, pw_real *larges
     return PW_OK;
   }
   PW_TRY(pw_mem_alloc("domain limit", d->n, sizeof(pw_real), &sim->limit));
+  if (sim->mesh.graded) {
+    return create_graded_limits(sim, d, largest);
+  }
   for (pw_idx i = 0; i < d->n; i++) {
-    pw_real start = half_diagonal(d, i) * (1.0 + 1e-12);
+    pw_real start = half_diagonal(d, i, (pw_real[]){1.0, 1.0}) * (1.0 + 1e-12);
     sim->limit[i] = cells > 0.0 ? pw_max(start, cells * sim->mesh.cell) : 1e30;
     /* Without a limit domains may grow to four cells before the run stops. */
     *largest = pw_max(*largest, cells > 0.0 ? sim->limit[i] / sim->mesh.cell : 4.0);
@@ -184,13 +216,13 @@ static pw_status create_blocks(pw_sim *sim, pw_real reach_cells)
   }
   /* Domains reach as far as their limit; two cells at least, so that points with small domains may
    * drift before they must be sorted again. */
-  pw_idx reach = (pw_idx)ceil(reach_cells - 1e-9);
-  reach = reach < 2 ? 2 : reach;
+  pw_idx reach = pw_domain_reach(m, reach_cells);
   pw_idx per_block = sim->scene.method.block_elements;
   per_block = per_block > 0 ? per_block : pw_blocks_choose_size(m->nelem, sim->threads);
   pw_status status = pw_blocks_create(m->cells, weight, per_block, reach, sim->nbody, &sim->blocks);
   pw_mem_free(&weight);
   PW_TRY(status);
+  PW_TRY(pw_share_create(&sim->blocks, sim->threads));
   PW_TRY(pw_mem_alloc("block sums", sim->blocks.nblock, sizeof(pw_block_sums), &sim->sums));
   PW_TRY(pw_mem_alloc("sort", p->n, sizeof(pw_idx), &sim->from));
   return pw_mem_alloc("scratch", p->ld, sizeof(pw_real), &sim->scratch);
@@ -203,6 +235,7 @@ static void bind_transfer(pw_sim *sim)
   sim->transfer = (pw_transfer){.origin = {m->origin[0], m->origin[1]},
                                 .cell = m->cell,
                                 .cells = {m->cells[0], m->cells[1]},
+                                .axis = m->graded ? sim->mesh.axis : NULL,
                                 .row = m->nodes[0],
                                 .reach = sim->blocks.reach,
                                 .ld = p->ld,
@@ -227,6 +260,9 @@ static void init_materials(pw_sim *sim)
       j++;
     }
     const pw_body *b = &sim->body[p->body[i]];
+    if (b->model->place && p->state) {
+      b->model->place(b->param, j - i, p->ld, p->x + p->ld + i, p->state + i);
+    }
     if (b->model->init) {
       b->model->init(b->param, j - i, p->ld, p->stress + i, p->state ? p->state + i : NULL);
     }
@@ -251,8 +287,9 @@ static pw_status build(pw_sim *sim)
   const pw_scene *scene = &sim->scene;
   pw_real reach_cells = 0.0;
   PW_TRY(pw_scene_check(scene));
-  PW_TRY(pw_mesh_create(scene->grid.origin_m, scene->grid.size_m, scene->grid.cell_m, &sim->mesh));
-  sim->kernels = pw_kernels_find(scene->geometry, scene->method.basis);
+  PW_TRY(pw_mesh_create_grid(&scene->grid, &sim->mesh));
+  sim->kernels = sim->mesh.graded ? pw_kernels_find_graded(scene->geometry, scene->method.basis)
+                                  : pw_kernels_find(scene->geometry, scene->method.basis);
   PW_REQUIRE(sim->kernels, PW_ERR_UNSUPPORTED, "no kernels for this geometry and basis");
   PW_REQUIRE(scene->method.basis != PW_UGIMP || (sim->mesh.cells[0] > 1 && sim->mesh.cells[1] > 1),
              PW_ERR_SCENE, "grid: ugimp needs at least two cells in each direction");
@@ -260,15 +297,16 @@ static pw_status build(pw_sim *sim)
   sim->load_factor = 1.0;
   sim->time = 0.0;
   create_bodies(sim);
+  PW_TRY(pw_structures_create(sim));
   PW_TRY(create_points(sim, &reach_cells));
   PW_TRY(create_blocks(sim, reach_cells));
-  PW_TRY(pw_nodes_create(sim->mesh.nnode, has_contact(scene) ? 2 : 1, &sim->nodes));
+  PW_TRY(pw_nodes_create(sim->mesh.nnode, field_count(scene), &sim->nodes));
   bind_transfer(sim);
   init_materials(sim);
   PW_TRY(pw_update_sort(sim));
   pw_real density = PW_HUGE;
   for (int b = 0; b < sim->nbody; b++) {
-    density = pw_min(density, pw_scene_density(scene, b));
+    density = has_points(scene, b) ? pw_min(density, pw_scene_density(scene, b)) : density;
   }
   pw_real full = density * sim->mesh.cell * sim->mesh.cell;
   sim->mass_cut_off =
@@ -315,9 +353,11 @@ void pw_sim_destroy(pw_sim **sim_ptr)
       sim->scene.effect[e].type->destroy(&sim->ctx[e]);
     }
   }
+  pw_structures_destroy(sim);
   pw_points_destroy(&sim->points);
   pw_nodes_destroy(&sim->nodes);
   pw_blocks_destroy(&sim->blocks);
+  pw_mesh_destroy(&sim->mesh);
   pw_mem_free(&sim->sums);
   pw_mem_free(&sim->limit);
   pw_mem_free(&sim->from);

@@ -5,12 +5,19 @@
 #include <string.h>
 
 #include "engine/bodies.h"
+#include "engine/effects/contact_corner.h"
 #include "engine/interface.h"
+#include "engine/ranges.h"
+#include "engine/structure_sim.h"
 #include "engine/update.h"
 
 void pw_body_centre(const pw_sim *sim, int body, pw_real *out)
 {
   const pw_points *p = &sim->points;
+  if (sim->structure_of[body]) {
+    pw_structure_centre(sim->structure_of[body], out);
+    return;
+  }
   pw_real m = 0.0, s[6] = {0.0};
   for (pw_idx i = 0; i < p->n; i++) {
     if (p->body[i] == body) {
@@ -43,7 +50,7 @@ pw_real pw_kinetic_energy(const pw_sim *sim)
   for (pw_idx i = 0; i < p->n; i++) {
     sum += p->mass[i] * (p->v[i] * p->v[i] + p->v[p->ld + i] * p->v[p->ld + i]);
   }
-  return 0.5 * sim->measure * sum;
+  return 0.5 * sim->measure * sum + pw_structures_kinetic(sim);
 }
 
 void pw_sim_report(const pw_sim *sim, pw_report *out)
@@ -127,6 +134,19 @@ static void hash_bytes(uint64_t *hash, const void *data, size_t size)
   }
 }
 
+/* Bodies of points are told apart by their points' number. */
+static void hash_structure(uint64_t *hash, const pw_scene_body *b)
+{
+  const pw_real size[] = {b->x_m[0],   b->x_m[1],  b->y_m[0],       b->y_m[1],
+                          b->radius_m, b->tip_y_m, b->centre_m[0],  b->centre_m[1],
+                          b->length_m, b->mass_kg, b->tip_length_m, b->surface_segment_m};
+  const int choice[] = {b->kind, b->shape, b->tip, b->rod_elements, b->material};
+  if (b->kind != PW_BODY_POINTS) {
+    hash_bytes(hash, size, sizeof size);
+    hash_bytes(hash, choice, sizeof choice);
+  }
+}
+
 /* Everything of a scene that results depend on, so not its end, outputs, title and file. */
 static uint64_t scene_hash(const pw_scene *s)
 {
@@ -138,11 +158,15 @@ static uint64_t scene_hash(const pw_scene *s)
   hash_bytes(&hash, &s->method.basis, sizeof s->method.basis);
   hash_bytes(&hash, &s->method.update, sizeof s->method.update);
   hash_bytes(&hash, &s->method.domain_limit_cells, sizeof(pw_real));
+  hash_bytes(&hash, &s->method.domain_aspect_max, sizeof(pw_real));
   hash_bytes(&hash, &s->method.mass_cut_off, sizeof(pw_real));
   hash_bytes(&hash, &s->method.noise_damping_per_s, sizeof(pw_real));
   for (int m = 0; m < s->nmaterial; m++) {
     hash_bytes(&hash, s->material[m].model->name, strlen(s->material[m].model->name));
     hash_bytes(&hash, s->material[m].param, sizeof s->material[m].param);
+  }
+  for (int b = 0; b < s->nbody; b++) {
+    hash_structure(&hash, &s->body[b]);
   }
   for (int e = 0; e < s->neffect; e++) {
     hash_bytes(&hash, s->effect[e].type->name, strlen(s->effect[e].type->name));
@@ -239,10 +263,14 @@ pw_status pw_sim_archive(pw_sim *sim, pw_archive *ar)
                    (pw_off)sim->blocks.nblock * sim->nbody + 1));
   PW_TRY(pw_points_archive(&sim->points, ar));
   PW_TRY(ar->loading ? check_ranges(sim) : PW_OK);
+  PW_TRY(pw_structures_archive(sim, ar));
   for (int k = 0; k < sim->scene.neffect; k++) {
     if (sim->scene.effect[k].type->archive) {
       PW_TRY(sim->scene.effect[k].type->archive(sim, sim->ctx[k], ar));
     }
+  }
+  if (ar->loading) {
+    pw_ranges_renew(sim);
   }
   for (pw_idx k = 0; ar->loading && k < sim->blocks.nblock; k++) {
     pw_block_weights(sim, k); /* corners and local coordinates are not stored */
@@ -255,9 +283,16 @@ int pw_sim_outline(const pw_sim *sim, int i, pw_real *xy, int max)
   if (pw_sim_effect_ctx(sim, "contact_penalty")) {
     return i < 2 ? pw_contact_outline(sim, i, xy, max) : 0;
   }
+  if (pw_sim_effect_ctx(sim, "contact_corner")) {
+    return pw_corner_outline(sim, i, xy, max);
+  }
   for (int b = 0; b < sim->nbody; b++) {
-    if (sim->scene.body[b].shape == PW_SHAPE_RECTANGLE || i-- > 0) {
+    const pw_structure *structure = sim->structure_of[b];
+    if ((sim->scene.body[b].shape == PW_SHAPE_RECTANGLE && !structure) || i-- > 0) {
       continue;
+    }
+    if (structure) {
+      return pw_structure_outline(structure, xy, max);
     }
     pw_real centre[6];
     pw_body_centre(sim, b, centre);

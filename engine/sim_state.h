@@ -34,7 +34,8 @@ typedef struct pw_block_sums {
   pw_real kinetic;     /**< J per radian or metre, now */
   pw_real settled;     /**< taken out by the noise damping; J per radian or metre, this step */
   pw_real speed_max;   /**< max of c + |v|; m/s */
-  pw_off limited, rebuilt;
+  pw_real rate_max;    /**< graded grid: max of (c + |v|) / cell near the point; 1/s */
+  pw_off limited, rebuilt, reshaped;
   pw_idx bad; /**< first point whose stress or domain failed, or -1 */
   pw_status bad_status;
   pw_weights_report weights;
@@ -65,7 +66,7 @@ struct pw_sim {
   int nbody;
   pw_body body[PW_MAX_BODIES];
   int nstructure;
-  pw_structure *structure;                 /**< [nstructure] bodies without points */
+  pw_structure *structure;                   /**< [nstructure] bodies without points */
   pw_structure *structure_of[PW_MAX_BODIES]; /**< by body; NULL: it has points */
   pw_schedule schedule;
   void *ctx[PW_MAX_EFFECTS]; /**< contexts, same order as scene.effect */
@@ -81,8 +82,12 @@ struct pw_sim {
   pw_real mass;         /**< of all points; kg per metre or radian */
   pw_real signal_speed; /**< largest c + |v| at the end of the last step; m/s */
   pw_real load_factor;  /**< of gravity now, 0..1: the ramp; 1 without gravity */
-  int node_slot;        /**< PW_NODE_VEL or PW_NODE_REMAP: what a constraint hook is to change */
-  bool sort_needed;     /**< points are not in the order of their blocks */
+  const pw_real *buoyant; /**< mass of the water that the points at each node displace, in slot
+                               MASS of [nnode][PW_NODE]; kg; NULL: no ground water */
+  int buoyant_field;      /**< velocity field of those points */
+  struct pw_fbar *fbar;   /**< engine/fbar.h; NULL: off */
+  int node_slot;          /**< PW_NODE_VEL or PW_NODE_REMAP: what a constraint hook is to change */
+  bool sort_needed;       /**< points are not in the order of their blocks */
 
   pw_energy energy;       /**< kinetic: at the end of the last step */
   pw_real external_last;  /**< energy.external at the end of the last step; J */
@@ -90,9 +95,10 @@ struct pw_sim {
   pw_block_sums *sums;    /**< [nblock] */
   pw_real stage_wall[PW_TIMER_COUNT];
   pw_real wall;
-  pw_off sorts, limited, rebuilt, clamped;
+  pw_off sorts, limited, rebuilt, reshaped, clamped;
   pw_material_counts material;
-  pw_real *limit;   /**< [n by id] half diagonal allowed to each domain; m; NULL without CPDI */
+  pw_real *limit;   /**< [n by id] half diagonal allowed to each domain; m, or on a graded grid in
+                         cells where it is; NULL without CPDI */
   pw_idx *from;     /**< [n] sort scratch */
   pw_real *scratch; /**< [ld] */
 };

@@ -4,7 +4,13 @@
 #include <omp.h>
 
 #include "engine/assemble.h"
+#include "engine/fbar.h"
+#include "engine/ranges.h"
+#include "engine/structure_sim.h"
 #include "engine/update.h"
+
+/* Steps between divisions of the blocks among the threads: substeps move with the waves. */
+enum { REBALANCE = 32 };
 
 /* Charge the time since the last call to a stage. */
 static void lap(pw_sim *sim, pw_timer stage, double *since)
@@ -23,7 +29,11 @@ static void axis_condition(pw_sim *sim, int slot)
   for (int f = 0; f < sim->nodes.nfield; f++) {
     pw_real *rec = pw_nodes_field(&sim->nodes, f);
     for (pw_idx j = 0; j < sim->mesh.nodes[1]; j++) {
-      pw_real *r = rec + (pw_off)j * sim->mesh.nodes[0] * PW_NODE;
+      const pw_idx node = j * sim->mesh.nodes[0];
+      if (!pw_nodes_in_use(&sim->nodes, f, node)) {
+        continue;
+      }
+      pw_real *r = rec + (pw_off)node * PW_NODE;
       r[slot] = 0.0;
       r[PW_NODE_FORCE] = slot == PW_NODE_VEL ? 0.0 : r[PW_NODE_FORCE];
     }
@@ -46,6 +56,7 @@ static pw_status grid_velocity(pw_sim *sim, double *clock)
   lap(sim, PW_TIMER_P2G, clock);
   PW_TRY(pw_schedule_run(sim, PW_STAGE_P2G));
   PW_TRY(pw_schedule_run(sim, PW_STAGE_NODE_FORCE));
+  pw_structures_kick(sim);
   lap(sim, PW_TIMER_EFFECTS, clock);
   pw_nodes_momentum(&sim->nodes, sim->dt, sim->mass_cut_off);
   lap(sim, PW_TIMER_NODES, clock);
@@ -54,6 +65,16 @@ static pw_status grid_velocity(pw_sim *sim, double *clock)
   pw_nodes_increment(&sim->nodes);
   lap(sim, PW_TIMER_NODES, clock);
   return PW_OK;
+}
+
+/* Gather gradients; move, deform and stress the points. */
+static void update_points(pw_sim *sim, pw_update_pass *pass)
+{
+  if (sim->fbar && pass->stress) {
+    pw_fbar_clear(sim);
+    pw_assemble_coloured(&sim->blocks, sim->threads, pw_block_fbar_gather, pass);
+  }
+  pw_for_blocks(&sim->blocks, sim->threads, pw_block_update, pass);
 }
 
 /* USF: stress from the velocities at the start of the step. */
@@ -66,7 +87,7 @@ static pw_status stress_first(pw_sim *sim, double *clock)
   PW_TRY(constrain(sim, PW_STAGE_REMAP, PW_NODE_VEL));
   lap(sim, PW_TIMER_P2G, clock);
   pw_update_pass pass = {sim, PW_NODE_VEL, false, true};
-  pw_for_blocks(&sim->blocks, sim->threads, pw_block_update, &pass);
+  update_points(sim, &pass);
   lap(sim, PW_TIMER_G2P_STRESS, clock);
   PW_TRY(pw_update_collect(sim));
   return sim->sort_needed ? pw_update_sort(sim) : PW_OK; /* domains have changed: mind the halo */
@@ -95,7 +116,12 @@ pw_status pw_step_explicit(pw_sim *sim)
   if (sim->sort_needed) {
     PW_TRY(pw_update_sort(sim));
     lap(sim, PW_TIMER_SORT, &clock);
+  } else if (sim->step % REBALANCE == 1) {
+    pw_ranges_balance(sim);
   }
+  pw_structures_clear(sim);
+  sim->energy.spring =
+      0.0; /* each effect with springs adds what they hold at the end of the step */
   PW_TRY(pw_schedule_run(sim, PW_STAGE_BEGIN));
   lap(sim, PW_TIMER_EFFECTS, &clock);
   if (update == PW_USF) {
@@ -109,8 +135,9 @@ pw_status pw_step_explicit(pw_sim *sim)
     pw_for_blocks(&sim->blocks, sim->threads, pw_block_velocity, sim);
     lap(sim, PW_TIMER_REMAP, &clock);
   }
-  pw_for_blocks(&sim->blocks, sim->threads, pw_block_update, &pass);
+  update_points(sim, &pass);
   lap(sim, PW_TIMER_G2P_STRESS, &clock);
+  pw_structures_drift(sim);
   PW_TRY(pw_schedule_run(sim, PW_STAGE_MESH));
   sim->time += sim->dt;
   sim->step++;

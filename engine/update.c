@@ -7,13 +7,17 @@
 
 #include "engine/assemble.h"
 #include "engine/domain.h"
+#include "engine/fbar.h"
+#include "engine/ranges.h"
 #include "engine/sim_report.h"
+#include "engine/structure_sim.h"
 
 /** Scratch of one batch of points; lives on the stack of its thread. */
 typedef struct {
   pw_gradients grad;
   pw_real dstrain[6 * PW_CHUNK], spin[3 * PW_CHUNK], dvol[PW_CHUNK];
   pw_real left_cg[6 * PW_CHUNK], jac[PW_CHUNK], density[PW_CHUNK];
+  pw_real own_strain[6 * PW_CHUNK]; /* of the points' own gradients: what their stress works on */
   pw_real old_stress[6 * PW_CHUNK], wave_speed[PW_CHUNK];
 } batch;
 
@@ -140,6 +144,20 @@ static void set_bad(pw_block_sums *sums, pw_idx point, pw_status status)
   }
 }
 
+/* Largest (c + |v|) / h of the points, with the smallest cell h at each or beside it. */
+static pw_real fastest_crossing(const pw_sim *sim, const batch *s, pw_idx first, pw_idx n)
+{
+  const pw_points *p = &sim->points;
+  pw_real rate = 0.0;
+  for (pw_idx i = 0; i < n; i++) {
+    pw_real x[2] = {p->x[first + i], p->x[p->ld + first + i]};
+    pw_real vx = p->v[first + i], vy = p->v[p->ld + first + i];
+    pw_real speed = s->wave_speed[i] + sqrt(vx * vx + vy * vy);
+    rate = pw_max(rate, speed / pw_mesh_near_size(&sim->mesh, x));
+  }
+  return rate;
+}
+
 /* Work of the mean stress over the step, and the fastest signal c + |v|. */
 static void sum_batch(const pw_sim *sim, const batch *s, pw_idx first, pw_idx n,
                       pw_block_sums *sums)
@@ -155,7 +173,7 @@ static void sum_batch(const pw_sim *sim, const batch *s, pw_idx first, pw_idx n,
     for (int c = 0; c < 4; c++) { /* xx yy zz xy: the others do no work in the plane */
       pw_real twice = c == 3 ? 2.0 : 1.0;
       w += twice * (sig[c * ld + i] + s->old_stress[c * PW_CHUNK + i]) *
-           s->dstrain[c * PW_CHUNK + i];
+           s->own_strain[c * PW_CHUNK + i];
     }
     pw_real v2 = v[i] * v[i] + v[ld + i] * v[ld + i];
     bad = v2 < PW_HUGE || bad >= 0 ? bad : first + i; /* NaN too */
@@ -163,15 +181,36 @@ static void sum_batch(const pw_sim *sim, const batch *s, pw_idx first, pw_idx n,
     kinetic += 0.5 * p->mass[first + i] * v2;
     speed = pw_max(speed, s->wave_speed[i] + sqrt(v2));
   }
+  if (sim->mesh.graded) {
+    sums->rate_max = pw_max(sums->rate_max, fastest_crossing(sim, s, first, n));
+  }
   sums->strain_work += work;
   sums->kinetic += kinetic;
   set_bad(sums, bad, PW_RETRY_NAN);
   sums->speed_max = speed;
 }
 
-static void stress_batch(pw_sim *sim, const pw_body *body, batch *s, pw_idx first, pw_idx n,
-                         pw_block_sums *sums)
+/* What the material sees in place of the points' own deformation. */
+static void share_volume_change(pw_sim *sim, int b, batch *s, pw_idx first, pw_idx n)
 {
+  pw_fbar_apply(sim, b, first, n, s->dstrain, s->dvol);
+  if (!sim->body[b].model->needs_left_cg) {
+    return;
+  }
+  const bool axi = sim->scene.geometry == PW_AXI;
+  for (pw_idx i = 0; i < n; i++) {
+    pw_real ratio = sim->points.volume_ratio[first + i] / s->jac[i];
+    pw_real scale = axi ? cbrt(ratio * ratio) : ratio;
+    for (int k = 0; k < 4; k++) {
+      s->left_cg[k * PW_CHUNK + i] *= axi || k != 2 ? scale : 1.0;
+    }
+    s->jac[i] = sim->points.volume_ratio[first + i];
+  }
+}
+
+static void stress_batch(pw_sim *sim, int b, batch *s, pw_idx first, pw_idx n, pw_block_sums *sums)
+{
+  const pw_body *body = &sim->body[b];
   pw_points *p = &sim->points;
   for (int c = 0; c < 4; c++) {
     for (pw_idx i = 0; i < n; i++) {
@@ -196,6 +235,10 @@ static void stress_batch(pw_sim *sim, const pw_body *body, batch *s, pw_idx firs
     args.left_cg = s->left_cg;
     args.jac = s->jac;
   }
+  memcpy(s->own_strain, s->dstrain, sizeof s->own_strain);
+  if (sim->fbar && sim->fbar->body[b]) {
+    share_volume_change(sim, b, s, first, n);
+  }
   if (body->model->update(body->param, &args) != PW_OK) {
     set_bad(sums, first + args.bad, PW_RETRY_STRESS);
   }
@@ -214,19 +257,23 @@ static void update_body(const pw_update_pass *pass, batch *s, pw_idx block, int 
 {
   pw_sim *sim = pass->sim;
   pw_block_sums *sums = &sim->sums[block];
-  const pw_body *body = &sim->body[b];
-  const pw_real *rec = pw_nodes_field(&sim->nodes, body->field);
+  const pw_real *rec = pw_nodes_field(&sim->nodes, sim->body[b].field);
+  const bool shared = sim->fbar && sim->fbar->body[b] && pass->stress;
   pw_idx first, last;
   body_range(sim, block, b, &first, &last);
   for (; first < last; first += PW_CHUNK) {
     pw_idx n = last - first < PW_CHUNK ? last - first : PW_CHUNK;
-    sim->kernels->g2p_gradient(&sim->transfer, rec, pass->slot, sim->dt, pass->move, first,
-                               first + n, &s->grad);
+    if (shared) {
+      pw_fbar_gradients(sim->fbar, sim->points.ld, first, n, &s->grad);
+    } else {
+      sim->kernels->g2p_gradient(&sim->transfer, rec, pass->slot, sim->dt, pass->move, first,
+                                 first + n, &s->grad);
+    }
     if (!pass->stress) {
       continue;
     }
     set_bad(sums, deform(sim, s, first, n), PW_RETRY_DOMAIN_INVERTED);
-    stress_batch(sim, body, s, first, n, sums);
+    stress_batch(sim, b, s, first, n, sums);
     if (sim->limit) {
       pw_domain_convect(sim, first, n, sums);
     }
@@ -277,7 +324,7 @@ void pw_block_wave_speed(void *ctx, pw_idx block)
     for (; first < last; first += PW_CHUNK) {
       pw_idx n = last - first < PW_CHUNK ? last - first : PW_CHUNK;
       deform(sim, &s, first, n); /* gradients are zero: only density and increments are set */
-      stress_batch(sim, &sim->body[b], &s, first, n, &sim->sums[block]);
+      stress_batch(sim, b, &s, first, n, &sim->sums[block]);
     }
   }
 }
@@ -323,21 +370,29 @@ pw_status pw_update_check(pw_sim *sim)
 
 pw_status pw_update_collect(pw_sim *sim)
 {
-  pw_real speed = 0.0;
+  pw_real speed = 0.0, rate = 0.0;
   sim->energy.kinetic = 0.0;
   for (pw_idx k = 0; k < sim->blocks.nblock; k++) {
     const pw_block_sums *s = &sim->sums[k];
     sim->energy.kinetic += sim->measure * s->kinetic;
     sim->energy.strain_work += sim->measure * s->strain_work;
     speed = pw_max(speed, s->speed_max);
+    rate = pw_max(rate, s->rate_max);
     sim->limited += s->limited;
     sim->rebuilt += s->rebuilt;
+    sim->reshaped += s->reshaped;
     add_counts(&sim->material, &s->material);
   }
   PW_TRY(pw_update_check(sim));
+  sim->energy.kinetic += pw_structures_kinetic(sim);
+  const pw_real swift = pw_structures_speed(sim);
+  speed = swift <= speed ? speed : swift;
+  rate = pw_max(rate, swift / sim->mesh.cell);
   const pw_scene *scene = &sim->scene;
   sim->signal_speed = speed;
-  sim->dt_next = pw_min(scene->time.dt_max_s, scene->time.cfl * sim->mesh.cell / speed);
+  const pw_real cfl = scene->time.cfl;
+  pw_real stable = sim->mesh.graded ? cfl / rate : cfl * sim->mesh.cell / speed;
+  sim->dt_next = pw_min(scene->time.dt_max_s, stable);
   if (scene->time.dt_s > 0.0) {
     sim->dt_next = scene->time.dt_s;
   }
@@ -361,6 +416,7 @@ pw_status pw_update_sort(pw_sim *sim)
   if (pw_blocks_sort(&sim->blocks, p->n, p->home, p->body, sim->from)) {
     pw_points_permute(p, sim->from, sim->scratch);
   }
+  pw_ranges_renew(sim);
   pw_for_blocks(&sim->blocks, sim->threads, pw_block_weights, sim);
   for (pw_idx k = 0; k < sim->blocks.nblock; k++) {
     pw_idx far = sim->sums[k].weights.overrun;
@@ -411,6 +467,9 @@ pw_status pw_update_energy(pw_sim *sim)
   if (surplus <= supplied + floor) {
     return PW_OK;
   }
+  PW_REQUIRE(sim->points.n > 0, PW_RETRY_DIVERGED,
+             "unstable: %.4g J of energy appeared from nothing, %.4g J were supplied", surplus,
+             supplied);
   char what[160];
   snprintf(what, sizeof what,
            "unstable, a smaller time.cfl may help: %.4g J of energy appeared from nothing, %.4g J "

@@ -47,6 +47,16 @@ static pw_off node_count(const pw_sim *sim, const damping *c)
   return (pw_off)(c->last - c->first) * sim->nodes.nnode;
 }
 
+static void damp_node(pw_real alpha, pw_real *r, pw_real *force)
+{
+  for (int a = 0; a < 2; a++) {
+    pw_real f = r[PW_NODE_FORCE + a], p = r[PW_NODE_VEL + a];
+    pw_real sign = (pw_real)((p > 0.0) - (p < 0.0));
+    force[a] = -alpha * (f < 0.0 ? -f : f) * sign;
+    r[PW_NODE_FORCE + a] = f + force[a];
+  }
+}
+
 static pw_status damp(pw_sim *sim, void *ctx)
 {
   damping *c = ctx;
@@ -54,18 +64,18 @@ static pw_status damp(pw_sim *sim, void *ctx)
   if (!c->on) {
     return PW_OK;
   }
-  const pw_off count = node_count(sim, c);
+  const pw_off from = (pw_off)c->first * sim->nodes.nnode, to = from + node_count(sim, c);
   const pw_real alpha = c->param->coefficient;
-  pw_real *rec = pw_nodes_field(&sim->nodes, c->first), *force = c->force;
-#pragma omp parallel for default(none) shared(rec, force, count, alpha) num_threads(sim->threads)  \
-    schedule(static)
-  for (pw_off k = 0; k < count; k++) {
-    pw_real *r = rec + k * PW_NODE;
-    for (int a = 0; a < 2; a++) {
-      pw_real f = r[PW_NODE_FORCE + a], p = r[PW_NODE_VEL + a];
-      pw_real sign = (pw_real)((p > 0.0) - (p < 0.0));
-      force[2 * k + a] = -alpha * (f < 0.0 ? -f : f) * sign;
-      r[PW_NODE_FORCE + a] = f + force[2 * k + a];
+  const pw_nodes *nodes = &sim->nodes;
+  pw_real *force = c->force;
+#pragma omp parallel for default(none) shared(nodes, force, from, to, alpha)                       \
+    num_threads(sim->threads) schedule(static)
+  for (pw_idx i = 0; i < nodes->nused; i++) {
+    pw_off k, last;
+    pw_nodes_group(nodes, i, &k, &last);
+    last = last < to ? last : to;
+    for (k = k > from ? k : from; k < last; k++) {
+      damp_node(alpha, nodes->rec + k * PW_NODE, force + 2 * (k - from));
     }
   }
   return PW_OK;
@@ -74,10 +84,12 @@ static pw_status damp(pw_sim *sim, void *ctx)
 static void power(const void *ctx, pw_off first, pw_off last, pw_real *sum)
 {
   const damped *d = ctx;
-  const pw_real *rec = pw_nodes_field(&d->sim->nodes, d->c->first);
+  const pw_real *rec = d->sim->nodes.rec;
+  const pw_off from = (pw_off)d->c->first * d->sim->nodes.nnode;
   for (pw_off k = first; k < last; k++) {
     for (int a = 0; a < 2; a++) {
-      sum[0] += d->c->force[2 * k + a] * pw_node_mean_velocity(d->sim, rec + k * PW_NODE, a);
+      sum[0] +=
+          d->c->force[2 * (k - from) + a] * pw_node_mean_velocity(d->sim, rec + k * PW_NODE, a);
     }
   }
 }
@@ -89,7 +101,7 @@ static pw_status add_dissipation(pw_sim *sim, void *ctx)
   if (c->on) {
     pw_real sum[PW_SUMS];
     damped d = {sim, c};
-    pw_sum_items(power, &d, node_count(sim, c), sim->threads, c->part, sum);
+    pw_sum_nodes(power, &d, sim, (const int[]){c->first, c->last}, c->part, sum);
     sim->energy.damping -= sum[0] * sim->dt * sim->measure;
   }
   return PW_OK;

@@ -41,19 +41,41 @@ static void set_acceleration(pw_sim *sim, gravity *c)
   sim->load_factor = ramp;
 }
 
+/* The weight of the water displaced at the nodes, against gravity. */
+static void add_buoyancy(pw_sim *sim, const gravity *c)
+{
+  const pw_real *water = sim->buoyant, gx = c->g[0], gy = c->g[1];
+  pw_real *rec = pw_nodes_field(&sim->nodes, sim->buoyant_field);
+  const pw_off n = sim->nodes.nnode;
+#pragma omp parallel for default(none) shared(water, rec, n, gx, gy) num_threads(sim->threads)     \
+    schedule(static)
+  for (pw_off k = 0; k < n; k++) {
+    rec[k * PW_NODE + PW_NODE_FORCE] -= water[k * PW_NODE + PW_NODE_MASS] * gx;
+    rec[k * PW_NODE + PW_NODE_FORCE + 1] -= water[k * PW_NODE + PW_NODE_MASS] * gy;
+  }
+}
+
 static pw_status add_weight(pw_sim *sim, void *ctx)
 {
   gravity *c = ctx;
   set_acceleration(sim, c);
-  const pw_off count = (pw_off)sim->nodes.nnode * sim->nodes.nfield;
+  const pw_nodes *nodes = &sim->nodes;
   const pw_real gx = c->g[0], gy = c->g[1];
-  pw_real *rec = sim->nodes.rec;
-#pragma omp parallel for default(none) shared(rec, count, gx, gy) num_threads(sim->threads)        \
+#pragma omp parallel for default(none) shared(nodes, gx, gy) num_threads(sim->threads)             \
     schedule(static)
-  for (pw_off k = 0; k < count; k++) {
-    pw_real *r = rec + k * PW_NODE;
-    r[PW_NODE_FORCE] += r[PW_NODE_MASS] * gx;
-    r[PW_NODE_FORCE + 1] += r[PW_NODE_MASS] * gy;
+  for (pw_idx i = 0; i < nodes->nused; i++) {
+    pw_off k, last;
+    for (pw_nodes_group(nodes, i, &k, &last); k < last; k++) {
+      pw_real *r = nodes->rec + k * PW_NODE;
+      r[PW_NODE_FORCE] += r[PW_NODE_MASS] * gx;
+      r[PW_NODE_FORCE + 1] += r[PW_NODE_MASS] * gy;
+    }
+  }
+  if (sim->buoyant) {
+    add_buoyancy(sim, c);
+  }
+  for (int k = 0; k < sim->nstructure; k++) { /* its work is the structure's own affair */
+    pw_structure_add_weight(&sim->structure[k], c->g);
   }
   return PW_OK;
 }
@@ -69,15 +91,32 @@ static void momentum(const void *ctx, pw_off first, pw_off last, pw_real *sum)
   }
 }
 
+/* The same of the water displaced. */
+static void momentum_of_water(const void *ctx, pw_off first, pw_off last, pw_real *sum)
+{
+  const pw_sim *sim = ctx;
+  const pw_real *water = sim->buoyant;
+  const pw_real *rec = pw_nodes_field(&sim->nodes, sim->buoyant_field);
+  for (pw_off k = first; k < last; k++) {
+    for (int a = 0; a < 2; a++) {
+      sum[a] +=
+          water[k * PW_NODE + PW_NODE_MASS] * pw_node_mean_velocity(sim, rec + k * PW_NODE, a);
+    }
+  }
+}
+
 /* Work of the nodal weights: in axisymmetry this is the weight's work over the whole domain of a
  * point, which its centre alone does not give. */
 static pw_status add_work(pw_sim *sim, void *ctx)
 {
   const gravity *c = ctx;
   pw_real sum[PW_SUMS];
-  pw_sum_items(momentum, sim, (pw_off)sim->nodes.nnode * sim->nodes.nfield, sim->threads, c->part,
-               sum);
+  pw_sum_nodes(momentum, sim, sim, (const int[]){0, sim->nodes.nfield}, c->part, sum);
   sim->energy.external += sim->measure * sim->dt * (c->g[0] * sum[0] + c->g[1] * sum[1]);
+  if (sim->buoyant) {
+    pw_sum_items(momentum_of_water, sim, sim->nodes.nnode, sim->threads, c->part, sum);
+    sim->energy.external -= sim->measure * sim->dt * (c->g[0] * sum[0] + c->g[1] * sum[1]);
+  }
   return PW_OK;
 }
 

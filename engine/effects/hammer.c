@@ -36,7 +36,9 @@ typedef struct hammer {
 static pw_status check(const pw_scene *scene, const void *param)
 {
   const pw_hammer_param *p = param;
-  (void)scene;
+  const pw_scene_body *b = &scene->body[p->body];
+  PW_REQUIRE(b->kind == PW_BODY_POINTS || b->shape != PW_SHAPE_DISC, PW_ERR_SCENE,
+             "body: the disc '%s' has no head that a hammer could strike", b->name);
   PW_REQUIRE(p->rise_s <= p->duration_s, PW_ERR_SCENE,
              "rise_s = %g s is longer than duration_s = %g s", p->rise_s, p->duration_s);
   pw_real length = p->duration_s + (p->pulse == PW_PULSE_RECTANGULAR ? p->rise_s : 0.0);
@@ -50,17 +52,22 @@ static pw_status add_force(pw_sim *sim, void *ctx)
   hammer *c = ctx;
   pw_real factor = pw_pulse_mean(&c->pulse, sim->time, sim->dt);
   c->force = 0.0;
-  if (factor > 0.0) {
+  pw_structure *s = sim->structure_of[c->param->body];
+  if (factor > 0.0 && s) {
+    pw_real force = c->param->pressure_pa * factor * s->head_area;
+    pw_structure_add_head_force(s, -force);
+    c->force = sim->measure * force;
+  } else if (factor > 0.0) {
     c->force = pw_surface_load_apply(sim, &c->load, c->param->pressure_pa * factor);
-    c->impulse += c->force * sim->dt;
   }
+  c->impulse += c->force * sim->dt;
   return PW_OK;
 }
 
 static pw_status add_work(pw_sim *sim, void *ctx)
 {
   const hammer *c = ctx;
-  if (c->force > 0.0) {
+  if (c->force > 0.0 && !sim->structure_of[c->param->body]) {
     sim->energy.external += pw_surface_load_work(sim, &c->load);
   }
   return PW_OK;
@@ -105,7 +112,8 @@ static pw_status create(pw_sim *sim, const void *param, void **ctx)
   const pw_hammer_param *p = param;
   c->param = p;
   c->pulse = (pw_pulse){p->pulse, p->start_s, p->duration_s, p->rise_s, p->period_s, p->count};
-  return pw_surface_load_create(sim, p->body, PW_SIDE_TOP, &c->load);
+  return sim->structure_of[p->body] ? PW_OK
+                                    : pw_surface_load_create(sim, p->body, PW_SIDE_TOP, &c->load);
 }
 
 static const pw_hook hooks[] = {
@@ -117,6 +125,7 @@ static const pw_hook hooks[] = {
 const pw_effect pw_effect_hammer = {
     .name = "hammer",
     .brief = "pulses of pressure on the top of a body",
+    .structure_key = "body",
     .keys = keys,
     .hooks = hooks,
     .check = check,

@@ -20,9 +20,17 @@ typedef enum pw_side {
   PW_SIDE_BOX
 } pw_side;
 
-typedef enum pw_stress_kind { PW_STRESS_K0, PW_STRESS_UNIFORM } pw_stress_kind;
+typedef enum pw_stress_kind { PW_STRESS_K0, PW_STRESS_UNIFORM, PW_STRESS_LAYERS } pw_stress_kind;
 
-/** initial_stress: at-rest or uniform stress of one body at the start. */
+/** One soil layer: a rectangular body. */
+typedef struct pw_ground_layer {
+  int body;
+  pw_real k0;       /**< horizontal over vertical effective stress */
+  pw_real porosity; /**< 0: from the material's void_ratio */
+} pw_ground_layer;
+
+/** initial_stress: at-rest stress of one body or of layered ground, or uniform stress of one body,
+ *  at the start. */
 typedef struct pw_initial_stress_param {
   int body;
   int kind;                                         /**< pw_stress_kind */
@@ -31,6 +39,10 @@ typedef struct pw_initial_stress_param {
   pw_real surcharge_pa;                             /**< pressure on the free surface */
   pw_real acceleration_m_s2;                        /**< 0: that of the gravity section */
   pw_real stress_xx_pa, stress_yy_pa, stress_zz_pa; /**< uniform */
+  int nlayer;
+  pw_ground_layer layer[PW_MAX_BODIES]; /**< from the surface down */
+  pw_real water_table_y_m, water_density_kg_m3;
+  bool water_inertia; /**< points below the water table carry the mass of their pore water */
 } pw_initial_stress_param;
 
 /** gravity. */
@@ -59,14 +71,18 @@ typedef struct pw_hammer_param {
   int count;
 } pw_hammer_param;
 
-typedef enum pw_body_force_kind { PW_MMS_AXIS_ALIGNED, PW_MMS_VORTEX } pw_body_force_kind;
+typedef enum pw_body_force_kind {
+  PW_MMS_AXIS_ALIGNED,
+  PW_MMS_VORTEX,
+  PW_MMS_RING
+} pw_body_force_kind;
 typedef enum pw_mms_course { PW_MMS_SINE, PW_MMS_ONE_MINUS_COSINE } pw_mms_course;
 
 /** body_force: the body force of a manufactured motion of a neo-Hookean body. */
 typedef struct pw_body_force_param {
   int body;
   int kind;            /**< pw_body_force_kind */
-  pw_real amplitude;   /**< m (axis aligned), rad (vortex) */
+  pw_real amplitude;   /**< m (axis aligned, ring), rad (vortex) */
   int course;          /**< pw_mms_course of the vortex */
   pw_real origin_m[2]; /**< lower left corner of the unit square; centre of the ring */
 } pw_body_force_param;
@@ -94,6 +110,19 @@ typedef struct pw_boundary_param {
   int body; /**< -1: every velocity field */
 } pw_boundary_param;
 
+/** How an absorbing side is held until it starts. */
+typedef enum pw_before { PW_BEFORE_ROLLER, PW_BEFORE_FIXED } pw_before;
+
+/** absorbing (many): a side of the grid that lets waves out. */
+typedef struct pw_absorbing_param {
+  int side; /**< pw_side */
+  pw_real normal_factor, shear_factor;
+  pw_real shear_ratio;       /**< c_s / c_p */
+  pw_real source_distance_m; /**< of the springs; 0: none */
+  int before;                /**< pw_before */
+  pw_real start_s, mean_over_s;
+} pw_absorbing_param;
+
 /** pile_record: penetration, set per blow, settlement, base stress, overlap. */
 typedef struct pw_pile_record_param {
   int body; /**< the pile */
@@ -101,5 +130,10 @@ typedef struct pw_pile_record_param {
   pw_real far_field_x_m; /**< 0: 0.8 of the way from the pile's axis to the soil's right end */
   pw_real base_y_m;      /**< -1e300: the soil's own bottom */
 } pw_pile_record_param;
+
+/** fbar. */
+typedef struct pw_fbar_param {
+  int body; /**< -1: every body */
+} pw_fbar_param;
 
 #endif /* PW_EFFECTS_PARAMS_H */

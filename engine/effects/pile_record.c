@@ -75,7 +75,8 @@ static pw_real lowest(const pw_points *p, pw_idx i)
 
 static pw_real tip_height(const pw_sim *sim, const pile_record *c)
 {
-  pw_real y = PW_HUGE;
+  const pw_structure *s = sim->structure_of[c->param->body];
+  pw_real y = s ? pw_structure_tip(s) : PW_HUGE;
   for (pw_idx k = 0; k < c->tip.n; k++) {
     y = pw_min(y, lowest(&sim->points, sim->points.slot[c->tip.id[k]]));
   }
@@ -120,6 +121,11 @@ static pw_real pile_velocity(const pw_sim *sim, const pile_record *c)
 {
   const pw_points *p = &sim->points;
   pw_real mass = 0.0, sum = 0.0;
+  if (sim->structure_of[c->param->body]) {
+    pw_real centre[6];
+    pw_structure_centre(sim->structure_of[c->param->body], centre);
+    return centre[3];
+  }
   for (pw_idx i = 0; i < p->n; i++) {
     if (p->body[i] == c->param->body) {
       mass += p->mass[i];
@@ -256,18 +262,27 @@ static bool is_tip(const pw_sim *sim, const pile_record *c, pw_idx i)
          lowest(p, i) < b->tip_y_m + c->shape.radius + c->shape.tip_length;
 }
 
+/* Of the cell that holds a point; m. */
+static pw_real cell_height(const pw_sim *sim, pw_idx i)
+{
+  const pw_points *p = &sim->points;
+  pw_real x[2] = {p->x[i], p->x[p->ld + i]}, size[2];
+  pw_mesh_size_at(&sim->mesh, x, size);
+  return size[1];
+}
+
 static bool is_far(const pw_sim *sim, const pile_record *c, pw_idx i)
 {
   const pw_points *p = &sim->points;
   return p->body[i] == c->param->soil && p->x[i] > c->far_x &&
-         p->x[p->ld + i] > c->surface - sim->mesh.cell;
+         p->x[p->ld + i] > c->surface - cell_height(sim, i);
 }
 
 static bool is_base(const pw_sim *sim, const pile_record *c, pw_idx i)
 {
   const pw_points *p = &sim->points;
   pw_real over = p->x[p->ld + i] - c->base_y;
-  pw_real size = pw_max(sim->mesh.cell, sim->scene.body[c->param->soil].point_size_m);
+  pw_real size = pw_max(cell_height(sim, i), sim->scene.body[c->param->soil].point_size_m);
   return p->body[i] == c->param->soil && p->x[i] > 0.5 * c->far_x && over > 0.0 && over < size;
 }
 
@@ -335,7 +350,8 @@ static pw_status create(pw_sim *sim, const void *param, void **ctx)
   PW_TRY(choose(sim, c, is_tip, &c->tip));
   PW_TRY(choose(sim, c, is_far, &c->far));
   PW_TRY(choose(sim, c, is_base, &c->base));
-  PW_REQUIRE(c->tip.n > 0, PW_ERR_SCENE, "no point of body '%s' near its tip", pile->name);
+  PW_REQUIRE(c->tip.n > 0 || sim->structure_of[c->param->body], PW_ERR_SCENE,
+             "no point of body '%s' near its tip", pile->name);
   PW_REQUIRE(c->far.n > 0, PW_ERR_SCENE, "far_field_x_m = %g m: no soil point beyond it", c->far_x);
   PW_REQUIRE(c->base.n > 0, PW_ERR_SCENE, "base_y_m = %g m: no soil point above it", c->base_y);
   PW_TRY(pw_mem_alloc("pile record: heights", c->far.n, sizeof(pw_real), &c->far_y));
@@ -355,6 +371,7 @@ static const pw_hook hooks[] = {
 const pw_effect pw_effect_pile_record = {
     .name = "pile_record",
     .brief = "penetration, set per blow, settlement, base stress and overlap of a pile",
+    .structure_key = "body",
     .keys = keys,
     .hooks = hooks,
     .check = check,

@@ -5,6 +5,9 @@
  * give them no increment. The force that drives the body is what keeps its momentum M v against
  * the forces on its nodes, contact included: R = M (v - v_old) / dt - sum m (v(n+1) - v(n)) / dt
  * with the velocities before they are overwritten.
+ *
+ * A body without points keeps that force and its work itself (engine/structure.h); of a rod it is
+ * the head that moves as given.
  */
 #include "engine/effects/common.h"
 #include "engine/effects/load_curve.h"
@@ -20,7 +23,7 @@
 /* clang-format off */
 static const pw_key keys[] = {
   {"body", PW_KEY_BODY, AT(body), 0, 0, NULL, NULL, NULL,
-   "body that moves as given; it has its own velocity field by a contact, or is alone"},
+   "body that moves as given, or rod whose head does; of points it is alone, or a contact's side"},
   {"velocity_m_s", PW_KEY_PAIR, AT(velocity_m_s), -1e6, 1e6, NULL, NULL, NULL,
    "its velocity after the ramp"},
   {"start_s", PW_KEY_REAL, AT(start_s), 0, 1e12, "0", NULL, NULL,
@@ -43,9 +46,11 @@ typedef struct motion {
 static pw_status check(const pw_scene *scene, const void *param)
 {
   const pw_prescribed_motion_param *p = param;
-  PW_REQUIRE(scene->nbody == 1 || pw_scene_contacts(scene) > 0, PW_ERR_SCENE,
-             "body '%s' needs its own velocity field: add a contact effect",
-             scene->body[p->body].name);
+  const pw_scene_body *b = &scene->body[p->body];
+  PW_REQUIRE(b->kind != PW_BODY_ROD || p->velocity_m_s[0] == 0.0, PW_ERR_SCENE,
+             "velocity_m_s: the rod '%s' moves along y only", b->name);
+  PW_REQUIRE(scene->nbody == 1 || pw_scene_contacts(scene) > 0 || b->kind != PW_BODY_POINTS,
+             PW_ERR_SCENE, "body '%s' needs its own velocity field: add a contact effect", b->name);
   PW_REQUIRE(scene->geometry != PW_AXI || p->velocity_m_s[0] == 0.0, PW_ERR_SCENE,
              "velocity_m_s: in axisymmetry a body cannot be moved along the radius");
   return PW_OK;
@@ -102,9 +107,27 @@ static void overwrite(pw_sim *sim, const motion *c, int slot)
   }
 }
 
+/* The step of a structure is over: its force and work are known. */
+static pw_status read_structure(pw_sim *sim, void *ctx)
+{
+  motion *c = ctx;
+  const pw_structure *s = sim->structure_of[c->param->body];
+  if (s) {
+    for (int a = 0; a < 2; a++) {
+      c->force[a] = sim->measure * s->reaction[a];
+      c->velocity[a] = sim->body[s->body].prescribed_v[a];
+    }
+    c->work += sim->measure * s->given_work;
+  }
+  return PW_OK;
+}
+
 static pw_status drive(pw_sim *sim, void *ctx)
 {
   motion *c = ctx;
+  if (sim->structure_of[c->param->body]) {
+    return PW_OK;
+  }
   const pw_body *b = &sim->body[c->param->body];
   pw_real sum[PW_SUMS], work = 0.0;
   pw_sum_items(gained_momentum, pw_nodes_field(&sim->nodes, b->field), sim->nodes.nnode,
@@ -124,7 +147,10 @@ static pw_status drive(pw_sim *sim, void *ctx)
 
 static pw_status drive_remapped(pw_sim *sim, void *ctx)
 {
-  overwrite(sim, ctx, sim->node_slot);
+  const motion *c = ctx;
+  if (!sim->structure_of[c->param->body]) {
+    overwrite(sim, c, sim->node_slot);
+  }
   return PW_OK;
 }
 
@@ -172,8 +198,11 @@ static pw_status create(pw_sim *sim, const void *param, void **ctx)
   c->param = param;
   c->instance = pw_effect_instance(sim, param);
   const int body = c->param->body;
+  const bool points = !sim->structure_of[body];
   for (int b = 0; b < sim->nbody; b++) {
-    PW_REQUIRE(b == body || sim->body[b].field != sim->body[body].field, PW_ERR_SCENE,
+    PW_REQUIRE(b == body || !points || sim->structure_of[b] ||
+                   sim->body[b].field != sim->body[body].field,
+               PW_ERR_SCENE,
                "bodies '%s' and '%s' share a velocity field: '%s' must be the contact's master or "
                "its only slave",
                sim->body[body].name, sim->body[b].name, sim->body[body].name);
@@ -184,6 +213,10 @@ static pw_status create(pw_sim *sim, const void *param, void **ctx)
     sim->body[body].prescribed_v[a] = c->velocity[a];
   }
   sim->body[body].prescribed = true;
+  if (!points) {
+    pw_structure_set_velocity(sim->structure_of[body], c->velocity);
+    return PW_OK;
+  }
   for (pw_idx i = 0; i < p->n; i++) {
     if (p->body[i] == body) {
       c->mass += p->mass[i];
@@ -199,12 +232,14 @@ static const pw_hook hooks[] = {
     {PW_STAGE_BEGIN, begin},
     {PW_STAGE_CONSTRAINT, drive},
     {PW_STAGE_REMAP, drive_remapped},
+    {PW_STAGE_END, read_structure},
     {0, NULL},
 };
 
 const pw_effect pw_effect_prescribed_motion = {
     .name = "prescribed_motion",
     .brief = "a body whose velocity is given",
+    .structure_key = "body",
     .many = true,
     .keys = keys,
     .hooks = hooks,

@@ -1,0 +1,90 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "engine/fbar.h"
+
+#include <math.h>
+#include <string.h>
+
+static pw_real *cell_sums(const pw_sim *sim, int body)
+{
+  return sim->fbar->sum + 2 * (pw_off)body * sim->mesh.nelem;
+}
+
+void pw_fbar_clear(pw_sim *sim)
+{
+  for (int b = 0; b < sim->nbody; b++) {
+    if (sim->fbar->body[b]) {
+      memset(cell_sums(sim, b), 0, 2 * (size_t)sim->mesh.nelem * sizeof(pw_real));
+    }
+  }
+}
+
+static pw_real volume_ratio(const pw_real *du, pw_off stride)
+{
+  pw_real xx = du[0], xy = du[stride], yx = du[2 * stride], yy = du[3 * stride];
+  return ((1.0 + xx) * (1.0 + yy) - xy * yx) * (1.0 + du[4 * stride]);
+}
+
+static void gather_range(const pw_update_pass *pass, int b, pw_idx first, pw_idx n)
+{
+  pw_sim *sim = pass->sim;
+  pw_fbar *c = sim->fbar;
+  const pw_points *p = &sim->points;
+  pw_real *sum = cell_sums(sim, b);
+  pw_gradients grad;
+  for (pw_idx i = first; i < first + n; i++) {
+    pw_real x[2] = {p->x[i], p->x[p->ld + i]};
+    c->element[i] = pw_mesh_locate(&sim->mesh, x);
+  }
+  sim->kernels->g2p_gradient(&sim->transfer, pw_nodes_field(&sim->nodes, sim->body[b].field),
+                             pass->slot, sim->dt, pass->move, first, first + n, &grad);
+  for (int k = 0; k < 5; k++) {
+    memcpy(c->du + (pw_off)k * p->ld + first, grad.du[k], (size_t)n * sizeof(pw_real));
+  }
+  for (pw_idx i = 0; i < n; i++) {
+    const pw_idx e = c->element[first + i];
+    if (e >= 0) {
+      sum[2 * (pw_off)e] += p->vol[first + i];
+      sum[2 * (pw_off)e + 1] += p->vol[first + i] * volume_ratio(&grad.du[0][i], PW_CHUNK);
+    }
+  }
+}
+
+void pw_block_fbar_gather(void *ctx, pw_idx block)
+{
+  const pw_update_pass *pass = ctx;
+  pw_sim *sim = pass->sim;
+  for (int b = 0; b < sim->nbody; b++) {
+    const pw_idx *range = sim->blocks.point_start + (pw_off)block * sim->nbody + b;
+    for (pw_idx first = range[0]; sim->fbar->body[b] && first < range[1]; first += PW_CHUNK) {
+      gather_range(pass, b, first, range[1] - first < PW_CHUNK ? range[1] - first : PW_CHUNK);
+    }
+  }
+}
+
+void pw_fbar_gradients(const pw_fbar *c, pw_idx ld, pw_idx first, pw_idx n, pw_gradients *grad)
+{
+  for (int k = 0; k < 5; k++) {
+    memcpy(grad->du[k], c->du + (pw_off)k * ld + first, (size_t)n * sizeof(pw_real));
+  }
+}
+
+void pw_fbar_apply(pw_sim *sim, int body, pw_idx first, pw_idx n, pw_real *dstrain, pw_real *dvol)
+{
+  const pw_fbar *c = sim->fbar;
+  const bool axi = sim->scene.geometry == PW_AXI;
+  const pw_real *sum = cell_sums(sim, body);
+  pw_real *total = sim->points.volume_ratio + first, *vol = sim->points.vol + first;
+  for (pw_idx i = 0; i < n; i++) {
+    const pw_idx e = c->element[first + i];
+    pw_real mean = e >= 0 ? sum[2 * (pw_off)e + 1] / sum[2 * (pw_off)e] : dvol[i];
+    pw_real ratio = mean / dvol[i], scale = axi ? cbrt(ratio) : sqrt(ratio);
+    dstrain[i] = scale * (1.0 + dstrain[i]) - 1.0;
+    dstrain[PW_CHUNK + i] = scale * (1.0 + dstrain[PW_CHUNK + i]) - 1.0;
+    dstrain[2 * PW_CHUNK + i] =
+        axi ? scale * (1.0 + dstrain[2 * PW_CHUNK + i]) - 1.0 : dstrain[2 * PW_CHUNK + i];
+    dstrain[3 * PW_CHUNK + i] *= scale;
+    dvol[i] = mean;
+    vol[i] *= ratio;
+    total[i] *= mean;
+  }
+}
