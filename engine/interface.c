@@ -91,10 +91,24 @@ static inline pw_idx cell_of(pw_real x, pw_real origin, pw_real inv, pw_idx cell
   return k;
 }
 
+static void locate_graded(pw_interface *line, const pw_mesh *mesh)
+{
+  for (pw_idx k = 0; k < line->n; k++) {
+    pw_interface_node *n = &line->node[k];
+    pw_idx node[4];
+    pw_mesh_shape(mesh, n->x, node, n->shape);
+    n->node = node[0];
+  }
+}
+
 void pw_interface_locate(pw_interface *line, const pw_mesh *mesh)
 {
   const pw_real inv = 1.0 / mesh->cell;
   line->row = mesh->nodes[0];
+  if (mesh->graded) {
+    locate_graded(line, mesh);
+    return;
+  }
   for (pw_idx k = 0; k < line->n; k++) {
     pw_interface_node *n = &line->node[k];
     pw_real a, b;
@@ -105,6 +119,14 @@ void pw_interface_locate(pw_interface *line, const pw_mesh *mesh)
     n->shape[1] = a * (1.0 - b);
     n->shape[2] = (1.0 - a) * b;
     n->shape[3] = a * b;
+  }
+}
+
+void pw_interface_use(const pw_interface *line, pw_nodes *nodes, int f)
+{
+  for (pw_idx k = 0; k < line->n; k++) {
+    pw_nodes_use(nodes, f, line->node[k].node, 2);
+    pw_nodes_use(nodes, f, line->node[k].node + line->row, 2);
   }
 }
 

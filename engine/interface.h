@@ -115,6 +115,10 @@ void pw_interface_set_mass(pw_interface *line, pw_real surface_density);
 /** @brief Find element and shape functions of every node. */
 void pw_interface_locate(pw_interface *line, const pw_mesh *mesh);
 
+/** @brief The grid nodes of all elements with a node of the line are in use (engine/nodes.h), in
+ *  field @p f: to be called before the line scatters to it. */
+void pw_interface_use(const pw_interface *line, pw_nodes *nodes, int f);
+
 /** @brief Add mass and momentum to the records @p rec of the body's field (slots MASS, VEL). */
 void pw_interface_p2g(const pw_interface *line, pw_real *rec);
 

@@ -19,6 +19,8 @@ static void bounds(const pw_scene_body *b, pw_real *box)
     box[1] = b->x_m[1];
     box[2] = b->y_m[0];
     box[3] = b->y_m[1];
+  } else if (b->shape == PW_SHAPE_RING) {
+    pw_body_ring_box(b, box);
   } else {
     bool pile = b->shape == PW_SHAPE_PILE;
     box[0] = b->centre_m[0] - b->radius_m;

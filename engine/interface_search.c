@@ -211,34 +211,41 @@ void pw_bins_fill(pw_segment_bins *bins, const pw_interface *line)
   }
 }
 
-static bool shares_node(const pw_segment_bins *bins, pw_idx first)
+bool pw_bins_near(const pw_segment_bins *bins, pw_idx first)
 {
   const pw_idx *t = bins->touched + first;
   return t[0] == bins->stamp || t[1] == bins->stamp || t[bins->row] == bins->stamp ||
          t[bins->row + 1] == bins->stamp;
 }
 
-pw_idx pw_bins_detect(const pw_segment_bins *bins, const pw_interface *master, pw_real reach,
-                      const pw_interface_node *slave, pw_pair *pair)
+pw_idx pw_bins_nearest(const pw_segment_bins *bins, const pw_interface *master, pw_real reach,
+                       pw_idx cell, const pw_real *x)
 {
-  if (!shares_node(bins, slave->node)) {
+  if (!pw_bins_near(bins, cell)) {
     return -1;
   }
   pw_idx owner = -1;
   pw_real best = reach * reach;
   for (int i = 0; i < 9; i++) {
-    pw_idx cell = slave->node + (i / 3 - 1) * bins->row + (i % 3 - 1);
-    for (pw_idx e = cell >= 0 && cell < bins->ncell ? bins->head[cell] : -1; e >= 0;
+    pw_idx near = cell + (i / 3 - 1) * bins->row + (i % 3 - 1);
+    for (pw_idx e = near >= 0 && near < bins->ncell ? bins->head[near] : -1; e >= 0;
          e = bins->next[e]) {
       int place;
       pw_idx s = bins->segment[e];
-      pw_real d2 = distance2(master, s, slave->x, &place);
+      pw_real d2 = distance2(master, s, x, &place);
       if (d2 < best || (d2 == best && owner >= 0 && s < owner)) {
         best = d2;
         owner = s;
       }
     }
   }
+  return owner;
+}
+
+pw_idx pw_bins_detect(const pw_segment_bins *bins, const pw_interface *master, pw_real reach,
+                      const pw_interface_node *slave, pw_pair *pair)
+{
+  pw_idx owner = pw_bins_nearest(bins, master, reach, slave->node, slave->x);
   if (owner < 0) {
     return -1;
   }

@@ -33,6 +33,16 @@ void pw_bins_destroy(pw_segment_bins *bins);
 /** @brief Sort the segments of @p line into the cells they pass; the line must be located. */
 void pw_bins_fill(pw_segment_bins *bins, const pw_interface *line);
 
+/** @brief Whether the cell of lower left node @p first shares a grid node with a node of the line. */
+bool pw_bins_near(const pw_segment_bins *bins, pw_idx first);
+
+/**
+ * @brief The segment nearest to @p x [2], which lies in the cell of lower left node @p cell.
+ * @return -1 when none is closer than @p reach or the cell shares no grid node with the line.
+ */
+pw_idx pw_bins_nearest(const pw_segment_bins *bins, const pw_interface *master, pw_real reach,
+                       pw_idx cell, const pw_real *x);
+
 /**
  * @brief Steps one to three of the detection (thesis section 2.6.7) for a slave without contact.
  *

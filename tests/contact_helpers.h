@@ -9,10 +9,15 @@
 #include "engine/effects/contact.h"
 #include "tests/engine_helpers.h"
 
-/** The two contacts. */
-typedef enum test_contact { TEST_PENALTY, TEST_FRICTIONAL, TEST_CONTACTS } test_contact;
+/** The contacts. */
+typedef enum test_contact {
+  TEST_PENALTY,
+  TEST_FRICTIONAL,
+  TEST_CORNER,
+  TEST_CONTACTS
+} test_contact;
 
-static const char *const test_contact_name[TEST_CONTACTS] = {"penalty", "frictional"};
+static const char *const test_contact_name[TEST_CONTACTS] = {"penalty", "frictional", "corner"};
 
 /** Add a contact between bodies @p master and @p slave. */
 static inline void test_add_contact(pw_scene *scene, test_contact kind, int master, int slave,
@@ -25,6 +30,13 @@ static inline void test_add_contact(pw_scene *scene, test_contact kind, int mast
     p->slave = slave;
     p->friction = friction;
     p->normal_stiffness_pa_m = stiffness;
+    p->segment_m = segment;
+  } else if (kind == TEST_CORNER) { /* stiffness by its own rule */
+    pw_contact_corner_param *p = pw_scene_add_effect(scene, "contact_corner");
+    assert_non_null(p);
+    p->master = master;
+    p->slave = slave;
+    p->friction = friction;
     p->segment_m = segment;
   } else {
     pw_contact_frictional_param *p = pw_scene_add_effect(scene, "contact_frictional");

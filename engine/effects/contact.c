@@ -65,8 +65,12 @@ pw_status pw_contact_tally_archive(pw_contact_tally *t, const char *name, pw_arc
 
 const pw_contact_tally *pw_contact_tally_of(const pw_sim *sim)
 {
-  const void *ctx = pw_sim_effect_ctx(sim, "contact_penalty");
-  return ctx ? ctx : pw_sim_effect_ctx(sim, "contact_frictional");
+  static const char *const name[] = {"contact_penalty", "contact_corner", "contact_frictional"};
+  const void *ctx = NULL;
+  for (size_t k = 0; !ctx && k < sizeof name / sizeof *name; k++) {
+    ctx = pw_sim_effect_ctx(sim, name[k]);
+  }
+  return ctx;
 }
 
 pw_status pw_contact_check(const pw_scene *scene, int master, int slave)

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /**
  * @file engine/effects/contact.h
- * @brief What the two contact effects share: parameters, reaction on the master (layer 3).
+ * @brief What the contact effects share: parameters, reaction on the master (layer 3).
  */
 #ifndef PW_EFFECTS_CONTACT_H
 #define PW_EFFECTS_CONTACT_H
@@ -35,10 +35,23 @@ typedef struct pw_contact_frictional_param {
   bool require_compression; /**< only where the traction on the surface is not tensile */
 } pw_contact_frictional_param;
 
+/** contact_corner. */
+typedef struct pw_contact_corner_param {
+  int master; /**< body whose surface pushes: pile, plane */
+  int slave;  /**< body of material points whose domains' corners stay outside: soil */
+  pw_real friction;
+  pw_real adhesion_pa;           /**< shear strength of the interface without pressure */
+  pw_real shear_limit_pa;        /**< most shear stress; 0: no limit */
+  pw_real stiffness_factor;      /**< of the slave's modulus over half a domain */
+  pw_real normal_stiffness_pa_m; /**< 0: by the factor */
+  pw_real segment_m;             /**< 0: a quarter of a cell */
+  pw_real rounding_m;            /**< of the master's convex edges; negative: half a segment */
+} pw_contact_corner_param;
+
 /** Parts of the reaction that are kept apart. */
 enum { PW_REACTION_X, PW_REACTION_Y, PW_REACTION_SHAFT_Y, PW_REACTION_TIP_Y, PW_REACTIONS };
 
-/** Reaction of the contact on the master, whole body; first member of both contacts' contexts. */
+/** Reaction of the contact on the master, whole body; first member of every contact's context. */
 typedef struct pw_contact_tally {
   pw_real force[PW_REACTIONS];   /**< of the last step; N */
   pw_real impulse[PW_REACTIONS]; /**< since the last row of the history; N s */
@@ -67,7 +80,7 @@ pw_status pw_contact_tally_archive(pw_contact_tally *t, const char *name, pw_arc
 /** @brief Tally of the contact of a simulation, or NULL when it has none. */
 const pw_contact_tally *pw_contact_tally_of(const pw_sim *sim);
 
-/** @brief Rules for both contacts. @return PW_OK or PW_ERR_SCENE. */
+/** @brief Rules for every contact. @return PW_OK or PW_ERR_SCENE. */
 pw_status pw_contact_check(const pw_scene *scene, int master, int slave);
 
 #endif /* PW_EFFECTS_CONTACT_H */

@@ -68,6 +68,7 @@ static pw_status scatter_lines(pw_sim *sim, void *ctx)
       pw_interface_set_velocity(line[side], sim->body[line[side]->body].prescribed_v);
     }
     pw_interface_locate(line[side], &sim->mesh);
+    pw_interface_use(line[side], &sim->nodes, sim->body[line[side]->body].field);
     pw_interface_p2g(line[side], c->rec[side]);
   }
   return PW_OK;
@@ -86,7 +87,7 @@ static pw_status add_forces(pw_sim *sim, void *ctx)
   sim->dt_contact = pw_penalty_limit(c, sim->nodes.nnode, sim->dt);
   pw_penalty_forces(c);
   pw_contact_tally_end(&c->tally, sim->measure, sim->dt);
-  sim->energy.spring = sim->measure * c->spring;
+  sim->energy.spring += sim->measure * c->spring;
   sim->energy.contact += sim->measure * c->dissipated;
   return PW_OK;
 }

@@ -1,0 +1,88 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/**
+ * @file engine/effects/contact_corner.h
+ * @brief Inside of the corner contact: corners, and edges' middles, of the slave's CPDI domains
+ *        against the surface of the master (layer 3).
+ *
+ * In a step: (1) find the sites inside the master, (2) measure overlap, area and stiffness of
+ * each, (3) limit the stiffness to what the step resolves, (4) springs and friction, forces to
+ * the slave's grid field, (5) forces to the master. (1), (2) and (4) run over blocks of points, in
+ * (4) by colours; everything summed over blocks is summed in block order.
+ */
+#ifndef PW_EFFECTS_CONTACT_CORNER_H
+#define PW_EFFECTS_CONTACT_CORNER_H
+
+#include "engine/effects/contact.h"
+#include "engine/effects/contact_corner_domain.h"
+#include "engine/effects/contact_corner_surface.h"
+
+/** A site in contact in this step. */
+typedef struct pw_corner_pair {
+  pw_idx point;
+  int site;   /**< corner or edge's middle: contact_corner_domain.h */
+  bool fresh; /**< was not in contact in the last step */
+  pw_round_place place;
+  pw_real overlap;   /**< what of the gap makes force, >= 0; m */
+  pw_real advance;   /**< way along the surface since the last step; m */
+  pw_real area;      /**< m2 */
+  pw_real density;   /**< stiffness per area; Pa/m */
+  pw_real stiffness; /**< N/m */
+  pw_real relax;     /**< part of the stretch that a growth of the stiffness leaves; - */
+  pw_real rate;      /**< square of its frequency, from above; 1/s2 */
+  pw_real force[2];  /**< on the site; N */
+} pw_corner_pair;
+
+/** Sums and extremes of the sites of a block. */
+typedef struct pw_corner_sums {
+  pw_idx count; /**< sites found; their pairs begin at start */
+  pw_idx start;
+  pw_real spring, dissipated; /**< J per radian or metre, this step */
+  pw_real rate;               /**< largest square of a point's frequency, from above; 1/s2 */
+  pw_real deepest;            /**< of a site, >= 0; m */
+  pw_real centre;             /**< of a point's centre, >= 0; m */
+  pw_real softest, stiffest;  /**< stiffness per area; Pa/m */
+  pw_real offset;             /**< largest part of a gap without force; m */
+  char pad[PW_ALIGN];         /* neighbours in the array belong to other threads */
+} pw_corner_sums;
+
+/** A corner contact. */
+typedef struct pw_corner {
+  pw_contact_tally tally; /**< first: engine/effects/contact.h */
+  const pw_contact_corner_param *param;
+  pw_sim *sim;
+  pw_structure *structure; /**< the master, when it has no points */
+  pw_interface own;        /**< else: its surface */
+  pw_round_line surface;
+  pw_real master_modulus; /**< density times squared wave speed of the master; 0: rigid; Pa */
+  pw_idx capacity;        /**< pairs */
+  pw_corner_pair *pair;   /**< [capacity] */
+  pw_idx npair;
+  pw_idx *found;        /**< [8 points] site + 8 * point of a block, from 8 * its first point */
+  pw_idx *segment;      /**< [8 points] its segment */
+  pw_corner_sums *sums; /**< [nblock] */
+  pw_idx *box;          /**< [4 nblock] first and last node of the elements of a block along x, y */
+  pw_real *stiffness;   /**< [nnode] sums at nodes; zero but within pw_corner_limit */
+  /* Of the present step: */
+  pw_real *slave_rec, *master_rec;
+  bool given; /**< the master's motion is prescribed */
+  /* Of the run: */
+  pw_real centre_max;        /**< deepest centre of a point; m */
+  pw_real softest, stiffest; /**< Pa/m */
+  pw_off reduced;            /**< sites whose stiffness was reduced for a step */
+  pw_real offset_max;        /**< largest part of a gap without force; m */
+} pw_corner;
+
+/** @brief (1), (2): fill c->pair, history of sites that have left. @return PW_OK;
+ *  PW_ERR_MEMORY when more sites are in contact than there is room for. */
+pw_status pw_corner_search(pw_corner *c);
+
+/** @brief (3): limit stiffnesses. @return the largest step that resolves every pair; 0: none; s */
+pw_real pw_corner_limit(pw_corner *c);
+
+/** @brief (4), (5): forces, energies (J per radian or metre), tally. */
+void pw_corner_forces(pw_corner *c, pw_real *spring, pw_real *dissipated);
+
+/** @brief Present surface of the master, as pw_contact_outline(). */
+int pw_corner_outline(const pw_sim *sim, int which, pw_real *xy, int max);
+
+#endif /* PW_EFFECTS_CONTACT_CORNER_H */

@@ -1,0 +1,120 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Corner contact: springs, friction, forces on slave and master, energies. */
+#include "engine/effects/contact_corner.h"
+
+#include <math.h>
+
+#include "engine/assemble.h"
+
+static pw_real energy(pw_real k, pw_real stretch)
+{
+  return 0.5 * k * stretch * stretch;
+}
+
+/* Most force along the surface. */
+static pw_real shear_cap(const pw_contact_corner_param *p, const pw_corner_pair *q)
+{
+  if (!(q->overlap > 0.0)) {
+    return 0.0;
+  }
+  pw_real cap = p->friction * q->stiffness * q->overlap + p->adhesion_pa * q->area;
+  return p->shear_limit_pa > 0.0 ? pw_min(cap, p->shear_limit_pa * q->area) : cap;
+}
+
+/*
+ * The tangential spring takes the way since the last step and returns to its cap; like the normal
+ * one it keeps its force when the stiffness grows. Dissipated is what the spring of the last step
+ * and the work against its force leave over; in a step that only stretches it, nothing but by a
+ * change of the stiffness.
+ */
+static void pull_along(const pw_contact_corner_param *p, const pw_corner_pair *q, pw_real before,
+                       pw_real *slip, pw_corner_sums *sums)
+{
+  const pw_real k = q->stiffness, old = *slip, cap = shear_cap(p, q), trial = old + q->advance;
+  if (fabs(q->relax * trial) * k <= cap) {
+    *slip = q->relax * trial;
+    sums->dissipated += energy(before, trial) - energy(k, *slip);
+  } else {
+    *slip = k > 0.0 ? copysign(cap / k, trial) : 0.0;
+    sums->dissipated += energy(before, old) + before * old * q->advance - energy(k, *slip);
+  }
+}
+
+static void push(pw_corner *c, pw_corner_pair *q, pw_corner_sums *sums)
+{
+  pw_points *p = &c->sim->points;
+  const pw_off at = (pw_off)q->site * p->ld + q->point;
+  const pw_real before = q->fresh ? q->stiffness : p->contact_stiffness[at] * q->area;
+  pull_along(c->param, q, before, &p->contact_slip[at], sums);
+  p->contact_arc[at] = q->place.arc;
+  p->contact_stiffness[at] = q->density;
+  const pw_real normal = q->stiffness * q->overlap, shear = -q->stiffness * p->contact_slip[at];
+  for (int k = 0; k < 2; k++) {
+    q->force[k] = normal * q->place.n[k] + shear * q->place.t[k];
+  }
+  sums->spring += energy(q->stiffness, q->overlap) + energy(q->stiffness, p->contact_slip[at]);
+  pw_domain_now d = pw_domain_of(p, q->point, c->surface.line->axi);
+  pw_site_scatter(p, &d, q->site, c->sim->mesh.nodes[0], q->force, c->slave_rec);
+}
+
+static void push_block(void *ctx, pw_idx block)
+{
+  pw_corner *c = ctx;
+  pw_corner_sums *sums = &c->sums[block];
+  for (pw_idx k = 0; k < sums->count; k++) {
+    push(c, &c->pair[sums->start + k], sums);
+  }
+}
+
+/* Force on the master's own grid field, at the two nodes of a segment of its line. */
+static void push_field(pw_corner *c, const pw_round_place *q, const pw_real *f)
+{
+  const pw_interface *line = c->surface.line;
+  const pw_idx node[2] = {q->segment, pw_interface_next(line, q->segment)};
+  for (int e = 0; e < 2; e++) {
+    const pw_interface_node *a = &line->node[node[e]];
+    pw_real share = e == 0 ? 1.0 - q->xi : q->xi;
+    for (int j = 0; j < 4; j++) {
+      pw_off k = a->node + (j & 1) + (j >> 1) * line->row;
+      pw_real *r = c->master_rec + k * PW_NODE + PW_NODE_FORCE, w = share * a->weight[j];
+      r[0] += w * f[0];
+      r[1] += w * f[1];
+    }
+  }
+}
+
+static void push_master(pw_corner *c)
+{
+  const pw_interface *line = c->surface.line;
+  for (pw_idx k = 0; k < c->npair; k++) {
+    const pw_corner_pair *q = &c->pair[k];
+    const pw_real f[2] = {-q->force[0], -q->force[1]};
+    if (c->structure) {
+      pw_structure_add_force(c->structure, q->place.segment, q->place.xi, f);
+    } else {
+      push_field(c, &q->place, f);
+    }
+    const pw_interface_node *b = &line->node[pw_interface_next(line, q->place.segment)];
+    pw_contact_tally_add(&c->tally, f, line->node[q->place.segment].tip && b->tip);
+    c->tally.pairs += q->overlap > 0.0 ? 1 : 0;
+  }
+}
+
+void pw_corner_forces(pw_corner *c, pw_real *spring, pw_real *dissipated)
+{
+  if (c->npair > 0) {
+    pw_assemble_coloured(&c->sim->blocks, c->sim->threads, push_block, c);
+    push_master(c);
+  }
+  *spring = *dissipated = 0.0;
+  for (pw_idx k = 0; k < c->sim->blocks.nblock; k++) {
+    const pw_corner_sums *s = &c->sums[k];
+    *spring += s->spring;
+    *dissipated += s->dissipated;
+    c->tally.overlap = pw_max(c->tally.overlap, s->deepest);
+    c->centre_max = pw_max(c->centre_max, s->centre);
+    c->softest = s->count > 0 ? pw_min(c->softest, s->softest) : c->softest;
+    c->stiffest = pw_max(c->stiffest, s->stiffest);
+    c->offset_max = pw_max(c->offset_max, s->offset);
+  }
+}

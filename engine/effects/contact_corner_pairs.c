@@ -1,0 +1,267 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Corner contact: which sites are inside the master, and how stiff each is held. */
+#include "engine/effects/contact_corner.h"
+
+#include <math.h>
+
+#include "engine/assemble.h"
+
+/* A new contact may be this many times as deep as its closing motion explains. */
+static const pw_real EXPLAINED = 1.1;
+/* Overlap without force is worked out by this part of the sliding, as by a wedge. */
+static const pw_real WORK_OUT = 0.25;
+/* Part of half a domain that may stay overlapped without force. */
+static const pw_real LEFT = 0.02;
+
+static void slave_range(const pw_corner *c, pw_idx block, pw_idx *first, pw_idx *last)
+{
+  const pw_blocks *b = &c->sim->blocks;
+  const pw_idx *start = b->point_start + (pw_off)block * c->sim->nbody + c->param->slave;
+  *first = start[0];
+  *last = start[1];
+}
+
+/* Whether sites of a block's points can reach the box around the master. */
+static bool block_near(const pw_corner *c, pw_idx block)
+{
+  const pw_mesh *m = &c->sim->mesh;
+  const pw_idx *k = c->box + 4 * (pw_off)block;
+  const pw_real *box = c->surface.box;
+  return pw_mesh_node_x(m, k[0]) <= box[1] && pw_mesh_node_x(m, k[1]) >= box[0] &&
+         pw_mesh_node_y(m, k[2] * m->nodes[0]) <= box[3] &&
+         pw_mesh_node_y(m, k[3] * m->nodes[0]) >= box[2];
+}
+
+static pw_real energy(pw_real k, pw_real stretch)
+{
+  return 0.5 * k * stretch * stretch;
+}
+
+/* The contact of a site has ended: its tangential spring lets go. */
+static void release(pw_corner *c, pw_off at, pw_real area, pw_corner_sums *sums)
+{
+  pw_points *p = &c->sim->points;
+  sums->dissipated += energy(p->contact_stiffness[at] * area, p->contact_slip[at]);
+  p->contact_arc[at] = -1.0;
+  p->contact_slip[at] = p->contact_offset[at] = p->contact_stiffness[at] = 0.0;
+}
+
+/* Lower left node of the cell that holds a site near the surface; -1: it is far from it. */
+static pw_idx near_cell(const pw_corner *c, pw_idx i, int site, const pw_real *x)
+{
+  const pw_points *p = &c->sim->points;
+  const pw_segment_bins *bins = &c->surface.bins;
+  pw_idx cell = p->corner[(pw_off)(site % 4) * p->ld + i];
+  if (site < 4) {
+    return pw_bins_near(bins, cell) ? cell : -1;
+  }
+  pw_idx other = p->corner[(pw_off)((site + 1) % 4) * p->ld + i], node[4];
+  pw_real weight[4];
+  if (!pw_bins_near(bins, cell) && !pw_bins_near(bins, other)) {
+    return -1;
+  }
+  pw_mesh_shape(&c->sim->mesh, x, node, weight);
+  return node[0];
+}
+
+static void find_site(pw_corner *c, pw_idx i, const pw_domain_now *d, int site, pw_idx from,
+                      pw_corner_sums *sums)
+{
+  const pw_points *p = &c->sim->points;
+  const pw_off at = (pw_off)site * p->ld + i;
+  pw_real x[2];
+  pw_round_place place;
+  pw_site_place(d, site, x);
+  if (p->contact_arc[at] >= 0.0) {
+    pw_round_line_follow(&c->surface, p->contact_arc[at], x, &place);
+    if (place.gap >= 0.0) {
+      release(c, at, pw_site_area(d, site, place.n), sums);
+      return;
+    }
+  } else {
+    pw_idx cell = near_cell(c, i, site, x);
+    if (cell < 0 || !pw_round_line_find(&c->surface, x, cell, c->sim->mesh.cell, &place)) {
+      return;
+    }
+  }
+  c->found[from + sums->count] = PW_SITES * i + site;
+  c->segment[from + sums->count] = place.segment;
+  sums->count++;
+}
+
+static void find_in_block(void *ctx, pw_idx block)
+{
+  pw_corner *c = ctx;
+  pw_corner_sums *sums = &c->sums[block];
+  pw_idx first, last;
+  slave_range(c, block, &first, &last);
+  if (first == last || !block_near(c, block)) {
+    return;
+  }
+  for (pw_idx i = first; i < last; i++) {
+    pw_domain_now d = pw_domain_of(&c->sim->points, i, c->surface.line->axi);
+    for (int site = 0; site < PW_SITES; site++) {
+      find_site(c, i, &d, site, PW_SITES * first, sums);
+    }
+  }
+}
+
+/* Stiffness per area; Pa/m. */
+static pw_real stiffness_of(const pw_corner *c, const pw_domain_now *d)
+{
+  const pw_points *p = &c->sim->points;
+  const pw_idx i = d->point;
+  if (c->param->normal_stiffness_pa_m > 0.0) {
+    return c->param->normal_stiffness_pa_m;
+  }
+  pw_real modulus = p->mass[i] / p->vol[i] * p->wave_speed[i] * p->wave_speed[i];
+  if (c->master_modulus > 0.0) { /* two springs in series */
+    modulus *= c->master_modulus / (modulus + c->master_modulus);
+  }
+  return c->param->stiffness_factor * modulus / pw_domain_half_size(p, d);
+}
+
+/* How far site and surface have closed in a step, by the velocities at its start. */
+static pw_real closing(const pw_corner *c, const pw_corner_pair *q, const pw_domain_now *d)
+{
+  const pw_sim *sim = c->sim;
+  const pw_interface *line = c->surface.line;
+  const pw_interface_node *a = &line->node[q->place.segment];
+  const pw_interface_node *b = &line->node[pw_interface_next(line, q->place.segment)];
+  pw_real v[2], sum = 0.0;
+  pw_site_velocity(&sim->points, d, q->site, sim->mesh.nodes[0], sim->mass_cut_off, c->slave_rec,
+                   v);
+  for (int k = 0; k < 2; k++) {
+    pw_real master = (1.0 - q->place.xi) * a->du[k] + q->place.xi * b->du[k];
+    sum += q->place.n[k] * (master - sim->dt * v[k]);
+  }
+  return pw_max(sum, 0.0);
+}
+
+/* Offset of a new contact: what of its overlap the motion of a step does not explain makes no force
+ * until it is worked out by sliding, so that no energy comes from overlap at rest. */
+static pw_real first_offset(const pw_corner *c, const pw_corner_pair *q, const pw_domain_now *d)
+{
+  return pw_min(q->place.gap + EXPLAINED * closing(c, q, d), 0.0);
+}
+
+/* Offset of one that lasts: follows the site on its way out; where it is more than can be left,
+ * it is worked out. */
+static pw_real next_offset(const pw_corner_pair *q, pw_real old, pw_real slack)
+{
+  pw_real less = pw_max(pw_min(-old - slack, WORK_OUT * fabs(q->advance)), 0.0);
+  return pw_max(old + less, q->place.gap);
+}
+
+/*
+ * Stiffness and overlap. The soil's modulus changes by an order of magnitude between loading and
+ * unloading: a spring that followed it at constant overlap would push the harder the moment the
+ * load turns and give more than it took. So while a contact lasts its stiffness only grows, and
+ * it grows at constant force: the overlap that is stretched becomes less, the offset more, and the
+ * spring's energy falls by what is booked as dissipated.
+ */
+static void set_springs(const pw_corner *c, pw_corner_pair *q, const pw_domain_now *d,
+                        pw_real modulus, pw_corner_sums *sums)
+{
+  const pw_points *p = &c->sim->points;
+  const pw_off at = (pw_off)q->site * p->ld + q->point;
+  const pw_real gap = q->place.gap, old = p->contact_stiffness[at];
+  pw_real offset, slack = LEFT * pw_domain_half_size(p, d);
+  q->density = q->fresh ? modulus : pw_max(old, modulus);
+  q->stiffness = q->density * q->area;
+  if (q->fresh) {
+    offset = first_offset(c, q, d);
+    q->overlap = offset - gap;
+  } else {
+    pw_real before = pw_max(p->contact_offset[at] - gap, 0.0);
+    q->relax = q->density > 0.0 ? old / q->density : 1.0;
+    q->overlap = q->relax * (next_offset(q, p->contact_offset[at], slack) - gap);
+    offset = gap + q->overlap;
+    sums->dissipated += energy(old * q->area, before) - energy(q->stiffness, q->overlap);
+  }
+  p->contact_offset[at] = offset;
+  sums->offset = pw_max(sums->offset, -offset);
+}
+
+static pw_corner_pair measure_site(const pw_corner *c, pw_idx at, const pw_domain_now *d,
+                                   pw_real modulus, pw_corner_sums *sums)
+{
+  const pw_points *p = &c->sim->points;
+  pw_corner_pair q = {
+      .point = c->found[at] / PW_SITES, .site = c->found[at] % PW_SITES, .relax = 1.0};
+  pw_real x[2], arc = p->contact_arc[(pw_off)q.site * p->ld + q.point];
+  pw_site_place(d, q.site, x);
+  pw_round_line_place(&c->surface, c->segment[at], x, &q.place);
+  q.fresh = arc < 0.0;
+  q.advance = q.fresh ? 0.0 : pw_round_line_way(&c->surface, arc, q.place.arc);
+  q.area = pw_site_area(d, q.site, q.place.n);
+  set_springs(c, &q, d, modulus, sums);
+  sums->softest = pw_min(sums->softest, q.density);
+  sums->stiffest = pw_max(sums->stiffest, q.density);
+  sums->deepest = pw_max(sums->deepest, -q.place.gap);
+  return q;
+}
+
+/* Depth of a point's centre below the surface at a site of it. */
+static pw_real centre_depth(const pw_corner *c, const pw_corner_pair *q, const pw_domain_now *d)
+{
+  pw_real x[2];
+  pw_site_place(d, q->site, x);
+  pw_real gap = q->place.gap + q->place.n[0] * (d->x[0] - x[0]) + q->place.n[1] * (d->x[1] - x[1]);
+  if (gap < 0.0) {
+    pw_round_place place;
+    pw_round_line_follow(&c->surface, q->place.arc, d->x, &place);
+    gap = place.gap;
+  }
+  return pw_max(-gap, 0.0);
+}
+
+/* Square of the frequency of pairs [k, next), all of one point, from above. */
+static pw_real point_rate(const pw_corner *c, pw_idx k, pw_idx next, const pw_domain_now *d)
+{
+  pw_real rate = 0.0;
+  for (; k < next; k++) {
+    const pw_corner_pair *q = &c->pair[k];
+    rate += q->stiffness * pw_site_inverse_mass(d, q->site, c->sim->points.mass[q->point]);
+  }
+  return rate;
+}
+
+static void measure_block(void *ctx, pw_idx block)
+{
+  pw_corner *c = ctx;
+  pw_corner_sums *sums = &c->sums[block];
+  pw_idx first, last;
+  slave_range(c, block, &first, &last);
+  for (pw_idx k = 0; k < sums->count;) {
+    const pw_idx i = c->found[PW_SITES * first + k] / PW_SITES, start = sums->start + k;
+    pw_domain_now d = pw_domain_of(&c->sim->points, i, c->surface.line->axi);
+    pw_real stiffness = stiffness_of(c, &d);
+    for (; k < sums->count && c->found[PW_SITES * first + k] / PW_SITES == i; k++) {
+      c->pair[sums->start + k] = measure_site(c, PW_SITES * first + k, &d, stiffness, sums);
+      sums->centre = pw_max(sums->centre, centre_depth(c, &c->pair[sums->start + k], &d));
+    }
+    sums->rate = pw_max(sums->rate, point_rate(c, start, sums->start + k, &d));
+  }
+}
+
+pw_status pw_corner_search(pw_corner *c)
+{
+  const pw_sim *sim = c->sim;
+  for (pw_idx k = 0; k < sim->blocks.nblock; k++) {
+    c->sums[k] = (pw_corner_sums){.softest = PW_HUGE};
+  }
+  pw_for_blocks(&sim->blocks, sim->threads, find_in_block, c);
+  c->npair = 0;
+  for (pw_idx k = 0; k < sim->blocks.nblock; k++) {
+    c->sums[k].start = c->npair;
+    c->npair += c->sums[k].count;
+  }
+  PW_REQUIRE(c->npair <= c->capacity, PW_ERR_MEMORY,
+             "%d corners and edges of the slave's domains are inside the master, at most %d can be",
+             c->npair, c->capacity);
+  if (c->npair > 0) {
+    pw_for_blocks(&sim->blocks, sim->threads, measure_block, c);
+  }
+  return PW_OK;
+}

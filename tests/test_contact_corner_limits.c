@@ -1,0 +1,226 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Limits of the corner contact: no friction, no tangential force (C13); overlap in equilibrium as
+ * the stated stiffness says, error ~ 1 / stiffness (C9); an overlap at the start is harmless
+ * (E21); adhesion and shear limit; energy through an impact (C8); master as points and as a rigid
+ * structure. */
+#include "engine/effects/contact_corner.h"
+#include "tests/contact_helpers.h"
+
+static const pw_real G = 10.0, WIDTH = 1.0, HEIGHT = 0.5, DENSITY = 1000.0, YOUNGS = 2e6;
+
+/* A block with its lower face at `bottom` over a plate that is held: of points, or rigid. */
+static pw_scene *block(bool rigid, pw_real bottom, pw_real speed)
+{
+  static pw_scene s; /* large */
+  pw_scene_default(&s);
+  s.geometry = PW_PLANE;
+  test_grid(&s, (pw_real[]){-1.0, 2.0, -0.5, 1.5}, 0.25);
+  int material = test_elastic(&s, YOUNGS, 0.0, DENSITY);
+  test_rectangle(&s, material, (pw_real[]){-1.0, 2.0, -0.5, 0.0}, 0.125);
+  test_rectangle(&s, material, (pw_real[]){0.0, WIDTH, bottom, bottom + HEIGHT}, 0.125);
+  s.body[0].kind = rigid ? PW_BODY_RIGID : PW_BODY_POINTS;
+  s.body[1].velocity_m_s[1] = -speed;
+  test_add_contact(&s, TEST_CORNER, 0, 1, 0.3, 0.0, 0.0);
+  test_hold(&s, 0);
+  return &s;
+}
+
+static pw_contact_corner_param *contact_of(pw_scene *s)
+{
+  return (pw_contact_corner_param *)pw_scene_find_effect(s, "contact_corner");
+}
+
+static void settle(pw_scene *s, pw_real acceleration, pw_real tilt)
+{
+  pw_gravity_param *gravity = pw_scene_add_effect(s, "gravity");
+  gravity->acceleration_m_s2 = acceleration;
+  gravity->ramp_s = 0.3;
+  gravity->tilt_deg = tilt;
+  pw_damping_local_param *d = pw_scene_add_effect(s, "damping_local");
+  d->body = 1;
+  d->coefficient = 0.5;
+}
+
+static void without_friction_nothing_pulls_along(void **state)
+{
+  (void)state;
+  pw_scene *s = block(false, 0.0, 0.0);
+  contact_of(s)->friction = 0.0;
+  settle(s, G, 20.0);
+  pw_sim *sim = test_sim(s, 1);
+  test_run_to(sim, 0.5);
+  const pw_contact_tally *t = pw_contact_tally_of(sim);
+  assert_true(t->pairs > 0 && t->force[PW_REACTION_Y] < -1000.0);
+  assert_near(t->force[PW_REACTION_X], 0.0, 1e-12 * fabs(t->force[PW_REACTION_Y]));
+  pw_sim_destroy(&sim);
+}
+
+/* Weight per area over stiffness per area; the default states factor x E / half a domain. */
+static void overlap_is_pressure_over_stiffness(void **state)
+{
+  (void)state;
+  const pw_real pressure = DENSITY * G * HEIGHT;
+  pw_real last = 0.0;
+  for (int rigid = 0; rigid < 2; rigid++) {
+    for (int k = 0; k < 4; k++) {
+      pw_scene *s = block(rigid == 1, 0.0, 0.0);
+      contact_of(s)->normal_stiffness_pa_m = k == 0 ? 0.0 : 2e5 * pow(10.0, k);
+      settle(s, G, 0.0);
+      pw_sim *sim = test_sim(s, 1);
+      test_run_to(sim, 1.5);
+      const pw_corner *c = pw_sim_effect_ctx(sim, "contact_corner");
+      pw_real stiffness = k == 0 ? 0.2 * YOUNGS / 0.0625 : 2e5 * pow(10.0, k);
+      pw_real mean = 0.0, area = 0.0;
+      for (pw_idx q = 0; q < c->npair; q++) {
+        mean += c->pair[q].area * c->pair[q].overlap;
+        area += c->pair[q].area;
+      }
+      print_message("%s, %.1e Pa/m: overlap %.5g m, expected %.5g m\n", rigid ? "rigid" : "points",
+                    stiffness, mean / area, pressure / stiffness);
+      assert_relative(mean / area, pressure / stiffness, 0.01);
+      assert_near(area, WIDTH, 0.01);
+      if (k > 1) { /* rate -1 */
+        assert_near(log10(last / (mean / area)), 1.0, 0.02);
+      }
+      last = mean / area;
+      pw_sim_destroy(&sim);
+    }
+  }
+}
+
+/* The factor's default is relative to the present modulus: for a linear elastic block constant. */
+static void stiffness_is_stated(void **state)
+{
+  (void)state;
+  static pw_record r;
+  pw_scene *s = block(false, 0.0, 0.5);
+  pw_sim *sim = test_sim(s, 1);
+  test_run_to(sim, 0.02);
+  pw_sim_results(sim, &r);
+  for (int k = 0; k < r.n; k++) {
+    if (strcmp(r.item[k].name, "contact_stiffness_max_pa_m") == 0) {
+      assert_relative(r.item[k].value, 0.2 * YOUNGS / 0.0625, 0.05);
+      pw_sim_destroy(&sim);
+      return;
+    }
+  }
+  fail_msg("no stiffness among the results");
+}
+
+/* As the test of the same name for interface lines. */
+static void overlap_at_rest_stays_at_rest(void **state)
+{
+  (void)state;
+  pw_sim *sim = test_sim(block(false, -0.1, 0.0), 1);
+  const pw_corner *c = pw_sim_effect_ctx(sim, "contact_corner");
+  pw_real sum[5];
+  test_run_to(sim, 0.1);
+  test_body_sums(sim, 1, sum);
+  assert_near(hypot(sum[1], sum[2]), 0.0, 0.0);
+  assert_near(c->tally.overlap_max, 0.1, 1e-12); /* but it is reported */
+  assert_near(c->offset_max, 0.1, 1e-12);
+  pw_sim_destroy(&sim);
+}
+
+/* A sunk block leaves on the side it came in by, not faster than it came. */
+static void leaves_no_faster_than_it_came(void **state)
+{
+  (void)state;
+  const pw_real speed = 0.5;
+  pw_sim *sim = test_sim(block(false, -0.1, speed), 1);
+  pw_real sum[5] = {0.0}, fastest = 0.0, sideways = 0.0;
+  while (sim->time < 0.3) {
+    assert_ok(pw_sim_step(sim, 0.0));
+    test_body_sums(sim, 1, sum);
+    fastest = pw_max(fastest, sum[2] / sum[0]);
+    sideways = pw_max(sideways, fabs(sum[1] / sum[0]));
+  }
+  print_message("came with %.2f m/s, left with %.3f m/s, sideways %.1e m/s\n", speed, fastest,
+                sideways);
+  assert_true(fastest > 0.5 * speed && fastest <= 1.01 * speed);
+  assert_true(sideways < 0.01 * speed);
+  pw_sim_destroy(&sim);
+}
+
+/* On an incline of 30 degrees without friction but with adhesion a: a = g sin - adhesion / (rho h);
+ * a limit of shear stress caps friction likewise. */
+static void strength_limits_the_shear(void **state)
+{
+  (void)state;
+  for (int kind = 0; kind < 2; kind++) {
+    pw_scene *s = block(false, 0.0, 0.0);
+    pw_contact_corner_param *p = contact_of(s);
+    p->friction = kind == 0 ? 0.0 : 0.5;
+    p->adhesion_pa = kind == 0 ? 1000.0 : 0.0;
+    p->shear_limit_pa = kind == 0 ? 0.0 : 1000.0;
+    pw_gravity_param *gravity = pw_scene_add_effect(s, "gravity");
+    gravity->acceleration_m_s2 = G;
+    gravity->tilt_deg = 30.0;
+    gravity->ramp_s = 0.3;
+    pw_sim *sim = test_sim(s, 1);
+    pw_real a[5], b[5];
+    test_run_to(sim, 0.35);
+    test_body_sums(sim, 1, a);
+    test_run_to(sim, 0.6);
+    test_body_sums(sim, 1, b);
+    pw_real exact = 0.5 * G - 1000.0 / (DENSITY * HEIGHT);
+    print_message("%s: a = %.4f, exact %.4f m/s2\n", kind == 0 ? "adhesion" : "shear limit",
+                  (b[1] - a[1]) / a[0] / 0.25, exact);
+    assert_relative((b[1] - a[1]) / a[0] / 0.25, exact, 0.01);
+    pw_sim_destroy(&sim);
+  }
+}
+
+/* Error of the energy of a block that falls on the plate and rebounds, relative. */
+static pw_real impact_error(bool rigid, int phase, pw_real cfl)
+{
+  pw_scene *s = block(rigid, 0.02 + 0.0005 * phase, 1.0);
+  s->time.cfl = cfl;
+  pw_sim *sim = test_sim(s, 1);
+  const pw_energy *e = &sim->energy;
+  const pw_contact_tally *t = pw_contact_tally_of(sim);
+  do {
+    assert_ok(pw_sim_step(sim, 0.0));
+  } while (sim->time < 0.03 || t->pairs > 0);
+  pw_real sum[5], error = (e->kinetic + e->strain_work + e->contact) / e->initial - 1.0;
+  test_body_sums(sim, 1, sum);
+  assert_true(sum[2] > 0.9 * sum[0]);
+  pw_sim_destroy(&sim);
+  return error;
+}
+
+/* All corners of a flat face meet the plate in the same step: the worst case for the step's error,
+ * whose sign depends on the phase at which the overlap is first seen. With a quarter of the step
+ * it is below 1 % at each phase (C8), with the default step in the mean. */
+static void impact_keeps_energy(void **state)
+{
+  (void)state;
+  enum { PHASES = 8 };
+  for (int rigid = 0; rigid < 2; rigid++) {
+    pw_real mean = 0.0, worst = 0.0, fine = 0.0;
+    for (int phase = 0; phase < PHASES; phase++) {
+      pw_real error = impact_error(rigid == 1, phase, 0.4);
+      mean += error / PHASES;
+      worst = pw_max(worst, fabs(error));
+      fine = pw_max(fine, fabs(impact_error(rigid == 1, phase, 0.1)));
+    }
+    print_message("%s: error of energy %.2f %% in the mean, %.2f %% at most; quarter "
+                  "step %.2f %%\n",
+                  rigid ? "rigid" : "points", 100.0 * mean, 100.0 * worst, 100.0 * fine);
+    assert_true(fabs(mean) < 0.01 && worst < 0.03 && fine < 0.01);
+  }
+}
+
+int main(void)
+{
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(without_friction_nothing_pulls_along),
+      cmocka_unit_test(overlap_is_pressure_over_stiffness),
+      cmocka_unit_test(stiffness_is_stated),
+      cmocka_unit_test(overlap_at_rest_stays_at_rest),
+      cmocka_unit_test(leaves_no_faster_than_it_came),
+      cmocka_unit_test(strength_limits_the_shear),
+      cmocka_unit_test(impact_keeps_energy),
+  };
+  return cmocka_run_group_tests(tests, NULL, NULL);
+}
