@@ -14,8 +14,11 @@
  * @brief Print effects with their hooks, fields and bytes per point, sizes, blocks, the first
  *        stable step, and estimates of steps, memory and time.
  *
- * The time is estimated by making a few steps (at most about a second) with @p sim, which is not
- * to be used for anything else afterwards. Steps that fail leave the time out.
+ * The time is estimated without a step: the two passes over the points that change nothing (weights,
+ * stress for a zero increment) are timed, and what a whole step takes more is known as a multiple
+ * of them. Scenes with initial stresses then show how near to rest they start
+ * (io/check_equilibrium.h), for which @p sim makes steps: it is not to be used for anything else
+ * afterwards.
  */
 void pw_check_report(pw_sim *sim, FILE *out);
 
