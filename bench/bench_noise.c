@@ -24,7 +24,7 @@ static void column(pw_scene *s, double damping, double cfl)
   s->grid.cell_m = CELL;
   s->time.cfl = cfl;
   s->method.noise_damping_per_s = damping;
-  sand(&s->material[s->nmaterial++], 1);
+  bench_sand(&s->material[s->nmaterial++], true);
   s->body[s->nbody++] = (pw_scene_body){.name = "soil",
                                         .shape = PW_SHAPE_RECTANGLE,
                                         .x_m = {0.0, 1.25},

@@ -6,6 +6,8 @@
 #include <stdlib.h>
 
 #include "bench/sand.h"
+#include "engine/sim_state.h"
+#include "partition/share.h"
 
 static void column(pw_scene *s, int igs, double cells)
 {
@@ -16,7 +18,7 @@ static void column(pw_scene *s, int igs, double cells)
   s->grid.size_m[1] = 10.0 + 2.0 * h;
   s->grid.cell_m = h;
   s->time.cfl = 0.5;
-  sand(&s->material[s->nmaterial++], igs);
+  bench_sand(&s->material[s->nmaterial++], igs != 0);
   s->body[s->nbody++] = (pw_scene_body){.name = "soil",
                                         .shape = PW_SHAPE_RECTANGLE,
                                         .x_m = {0.0, 5.0},
@@ -51,6 +53,10 @@ static void print_report(const pw_sim *sim, int threads, int steps)
   printf("blocks %d colours %d bytes/point %lld sorts %lld substeps/update %.2f rhs/update %.2f\n",
          r.blocks, r.colours, (long long)r.bytes_per_point, (long long)r.sorts,
          (double)r.material.substeps / updates, (double)r.material.rhs / updates);
+  pw_real coloured, plain;
+  pw_share_bound(&sim->blocks, threads, &coloured, &plain);
+  printf("bounds on the speed-up: coloured scatters %.3f, gather and stress %.3f\n", coloured,
+         plain);
   for (int k = 0; k < PW_TIMER_COUNT; k++) {
     printf("  %-10s %6.1f ns/point\n", stage[k], 1e9 * r.stage_wall_s[k] / updates);
   }

@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /**
  * @file bench/sand.h
- * @brief The sand of the thesis' pile (table 4.1) as a material of a scene, for benchmarks.
+ * @brief The sand of the thesis' pile (table 4.1) as a material of a scene, for benchmarks and
+ *        tests.
  */
 #ifndef PW_BENCH_SAND_H
 #define PW_BENCH_SAND_H
@@ -11,7 +12,7 @@
 #include "engine/effects/params.h"
 #include "engine/sim.h"
 
-static inline void set_param(pw_scene_material *m, const char *key, pw_real value)
+static inline void bench_set_param(pw_scene_material *m, const char *key, pw_real value)
 {
   for (int k = 0; m->model->keys[k].name; k++) {
     if (strcmp(m->model->keys[k].name, key) == 0) {
@@ -20,8 +21,8 @@ static inline void set_param(pw_scene_material *m, const char *key, pw_real valu
   }
 }
 
-/* Thesis table 4.1. */
-static inline void sand(pw_scene_material *m, int igs)
+/** Thesis table 4.1; e = 0.65. A material without a name is called sand. */
+static inline void bench_sand(pw_scene_material *m, bool intergranular)
 {
   static const struct {
     const char *key;
@@ -37,13 +38,15 @@ static inline void sand(pw_scene_material *m, int igs)
            {"void_ratio_i0", 1.0},
            {"exponent_alpha", 0.13},
            {"exponent_beta", 1.0}};
-  strcpy(m->name, "sand");
+  if (!m->name[0]) {
+    strcpy(m->name, "sand");
+  }
   m->model = pw_material_find("hypoplastic_sand");
   pw_scene_defaults(m->model->keys, m->param);
   for (size_t k = 0; k < sizeof p / sizeof p[0]; k++) {
-    set_param(m, p[k].key, p[k].value);
+    bench_set_param(m, p[k].key, p[k].value);
   }
-  set_param(m, "intergranular_strain", igs);
+  bench_set_param(m, "intergranular_strain", intergranular ? 1.0 : 0.0);
 }
 
 #endif /* PW_BENCH_SAND_H */

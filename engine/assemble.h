@@ -6,7 +6,7 @@
 #ifndef PW_ENGINE_ASSEMBLE_H
 #define PW_ENGINE_ASSEMBLE_H
 
-#include "partition/blocks.h"
+#include "partition/share.h"
 
 /** Work on one block; must not fail: failures go into the block's own sums. */
 typedef void (*pw_block_fn)(void *ctx, pw_idx block);
@@ -14,12 +14,14 @@ typedef void (*pw_block_fn)(void *ctx, pw_idx block);
 /**
  * @brief Call @p fn for every block, colour after colour; blocks of a colour run at the same time.
  *
+ * Once the blocks are divided (pw_share_balance), each thread runs its own and blocks without
+ * points are left out; before that all are run, an equal number by each thread.
  * Within a colour no two blocks share a node of their supports, so @p fn may add to the nodes of
  * its block's support without atomics, and additions at a node always come in the same order.
  */
 void pw_assemble_coloured(const pw_blocks *b, int threads, pw_block_fn fn, void *ctx);
 
-/** @brief Call @p fn for every block in any order: for loops that write to points only. */
+/** @brief Call @p fn for the same blocks in any order: for loops that write to points only. */
 void pw_for_blocks(const pw_blocks *b, int threads, pw_block_fn fn, void *ctx);
 
 #endif /* PW_ENGINE_ASSEMBLE_H */

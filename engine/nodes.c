@@ -10,8 +10,22 @@ pw_status pw_nodes_create(pw_idx nnode, int nfield, pw_nodes *out)
 {
   PW_REQUIRE(nnode > 0 && nfield >= 1 && nfield <= PW_MAX_FIELDS, PW_ERR_ARGUMENT,
              "%d nodes with %d velocity fields", nnode, nfield);
-  pw_nodes nodes = {.nnode = nnode, .nfield = nfield};
-  PW_TRY(pw_mem_alloc("nodes", (pw_off)nnode * nfield * PW_NODE, sizeof(pw_real), &nodes.rec));
+  pw_nodes nodes = {.nnode = nnode, .nfield = nfield, .count = (pw_off)nnode * nfield};
+  nodes.ngroup = (pw_idx)((nodes.count + PW_NODE_GROUP - 1) / PW_NODE_GROUP);
+  pw_status s = pw_mem_alloc("nodes", nodes.count * PW_NODE, sizeof(pw_real), &nodes.rec);
+  if (s == PW_OK) {
+    s = pw_mem_alloc("nodes: groups", nodes.ngroup, sizeof *nodes.used, &nodes.used);
+  }
+  if (s == PW_OK) {
+    s = pw_mem_alloc("nodes: groups in use", nodes.ngroup, sizeof *nodes.in_use, &nodes.in_use);
+  }
+  if (s != PW_OK) {
+    pw_nodes_destroy(&nodes);
+    return s;
+  }
+  for (int f = 0; f < nfield; f++) {
+    pw_nodes_use(&nodes, f, 0, nnode);
+  }
   *out = nodes;
   return PW_OK;
 }
@@ -19,58 +33,94 @@ pw_status pw_nodes_create(pw_idx nnode, int nfield, pw_nodes *out)
 void pw_nodes_destroy(pw_nodes *nodes)
 {
   pw_mem_free(&nodes->rec);
+  pw_mem_free(&nodes->used);
+  pw_mem_free(&nodes->in_use);
   *nodes = (pw_nodes){0};
+}
+
+void pw_nodes_reset(pw_nodes *nodes)
+{
+  memset(nodes->rec, 0, (size_t)nodes->count * PW_NODE * sizeof *nodes->rec);
+  memset(nodes->in_use, 0, (size_t)nodes->ngroup * sizeof *nodes->in_use);
+  nodes->nused = 0;
+}
+
+static void use_group(pw_nodes *nodes, pw_idx g)
+{
+  pw_off first, last;
+  nodes->in_use[g] = true;
+  nodes->used[nodes->nused++] = g;
+  pw_nodes_group(nodes, nodes->nused - 1, &first, &last);
+  memset(nodes->rec + first * PW_NODE, 0, (size_t)(last - first) * PW_NODE * sizeof *nodes->rec);
+}
+
+void pw_nodes_use(pw_nodes *nodes, int f, pw_idx first, pw_idx n)
+{
+  const pw_off from = (pw_off)f * nodes->nnode + first;
+  const pw_idx end = (pw_idx)((from + n - 1) / PW_NODE_GROUP);
+  for (pw_idx g = (pw_idx)(from / PW_NODE_GROUP); g <= end; g++) {
+    if (!nodes->in_use[g]) {
+      use_group(nodes, g);
+    }
+  }
 }
 
 void pw_nodes_clear(pw_nodes *nodes)
 {
-  const pw_off count = (pw_off)nodes->nnode * nodes->nfield;
-  pw_real *rec = nodes->rec;
-#pragma omp parallel for default(none) shared(rec, count) schedule(static)
-  for (pw_off k = 0; k < count; k++) {
-    memset(rec + k * PW_NODE, 0, PW_NODE * sizeof *rec);
+  const pw_idx groups = nodes->nused;
+#pragma omp parallel for default(none) shared(nodes, groups) schedule(static)
+  for (pw_idx i = 0; i < groups; i++) {
+    pw_off k, last;
+    pw_nodes_group(nodes, i, &k, &last);
+    memset(nodes->rec + k * PW_NODE, 0, (size_t)(last - k) * PW_NODE * sizeof(pw_real));
   }
 }
 
 void pw_nodes_momentum(pw_nodes *nodes, pw_real dt, pw_real cut_off)
 {
-  const pw_off count = (pw_off)nodes->nnode * nodes->nfield;
-  pw_real *rec = nodes->rec;
-#pragma omp parallel for default(none) shared(rec, count, dt, cut_off) schedule(static)
-  for (pw_off k = 0; k < count; k++) {
-    pw_real *r = rec + k * PW_NODE;
-    pw_real active = r[PW_NODE_MASS] > cut_off ? 1.0 : 0.0;
-    pw_real inv = active / pw_max(r[PW_NODE_MASS], PW_TINY);
-    for (int a = 0; a < 2; a++) {
-      pw_real v = r[PW_NODE_VEL + a] * inv;
-      r[PW_NODE_VEL + a] = v + dt * r[PW_NODE_FORCE + a] * inv;
-      r[PW_NODE_FORCE + a] = v;
+  const pw_idx groups = nodes->nused;
+#pragma omp parallel for default(none) shared(nodes, groups, dt, cut_off) schedule(static)
+  for (pw_idx i = 0; i < groups; i++) {
+    pw_off k, last;
+    for (pw_nodes_group(nodes, i, &k, &last); k < last; k++) {
+      pw_real *r = nodes->rec + k * PW_NODE;
+      pw_real active = r[PW_NODE_MASS] > cut_off ? 1.0 : 0.0;
+      pw_real inv = active / pw_max(r[PW_NODE_MASS], PW_TINY);
+      for (int a = 0; a < 2; a++) {
+        pw_real v = r[PW_NODE_VEL + a] * inv;
+        r[PW_NODE_VEL + a] = v + dt * r[PW_NODE_FORCE + a] * inv;
+        r[PW_NODE_FORCE + a] = v;
+      }
+      r[PW_NODE_ACTIVE] = active;
     }
-    r[PW_NODE_ACTIVE] = active;
   }
 }
 
 void pw_nodes_increment(pw_nodes *nodes)
 {
-  const pw_off count = (pw_off)nodes->nnode * nodes->nfield;
-  pw_real *rec = nodes->rec;
-#pragma omp parallel for default(none) shared(rec, count) schedule(static)
-  for (pw_off k = 0; k < count; k++) {
-    pw_real *r = rec + k * PW_NODE;
-    r[PW_NODE_FORCE] = r[PW_NODE_VEL] - r[PW_NODE_FORCE];
-    r[PW_NODE_FORCE + 1] = r[PW_NODE_VEL + 1] - r[PW_NODE_FORCE + 1];
+  const pw_idx groups = nodes->nused;
+#pragma omp parallel for default(none) shared(nodes, groups) schedule(static)
+  for (pw_idx i = 0; i < groups; i++) {
+    pw_off k, last;
+    for (pw_nodes_group(nodes, i, &k, &last); k < last; k++) {
+      pw_real *r = nodes->rec + k * PW_NODE;
+      r[PW_NODE_FORCE] = r[PW_NODE_VEL] - r[PW_NODE_FORCE];
+      r[PW_NODE_FORCE + 1] = r[PW_NODE_VEL + 1] - r[PW_NODE_FORCE + 1];
+    }
   }
 }
 
 void pw_nodes_remap(pw_nodes *nodes)
 {
-  const pw_off count = (pw_off)nodes->nnode * nodes->nfield;
-  pw_real *rec = nodes->rec;
-#pragma omp parallel for default(none) shared(rec, count) schedule(static)
-  for (pw_off k = 0; k < count; k++) {
-    pw_real *r = rec + k * PW_NODE;
-    pw_real inv = r[PW_NODE_ACTIVE] > 0.0 ? 1.0 / r[PW_NODE_MASS] : 0.0;
-    r[PW_NODE_REMAP] *= inv;
-    r[PW_NODE_REMAP + 1] *= inv;
+  const pw_idx groups = nodes->nused;
+#pragma omp parallel for default(none) shared(nodes, groups) schedule(static)
+  for (pw_idx i = 0; i < groups; i++) {
+    pw_off k, last;
+    for (pw_nodes_group(nodes, i, &k, &last); k < last; k++) {
+      pw_real *r = nodes->rec + k * PW_NODE;
+      pw_real inv = r[PW_NODE_ACTIVE] > 0.0 ? 1.0 / r[PW_NODE_MASS] : 0.0;
+      r[PW_NODE_REMAP] *= inv;
+      r[PW_NODE_REMAP + 1] *= inv;
+    }
   }
 }

@@ -15,6 +15,12 @@
  *                                              increment of velocity
  *   PW_NODE_REMAP, +1         0                0                         remapped velocity
  *   PW_NODE_ACTIVE            0                1 when mass > cut-off     same
+ *
+ * A field seldom fills the grid: the pile's has a tenth of its nodes. Loops run over groups of
+ * PW_NODE_GROUP records that are in use, which are those that any block's points can reach
+ * (pw_nodes_reset, pw_nodes_use: engine/ranges.c) and those of interface lines. Nothing may be
+ * scattered to the others and no step clears them: they have no mass, their other slots may hold
+ * what a boundary or a given motion wrote.
  */
 #ifndef PW_ENGINE_NODES_H
 #define PW_ENGINE_NODES_H
@@ -28,14 +34,20 @@ enum {
   PW_NODE_FORCE = 3,  /**< N, then m/s: see above */
   PW_NODE_REMAP = 5,  /**< kg m/s, then m/s */
   PW_NODE_ACTIVE = 7, /**< 1.0 or 0.0 */
+  PW_NODE_GROUP = 8   /**< records that are in use together */
 };
 
 typedef struct pw_nodes {
   pw_idx nnode; /**< nodes of the grid */
   int nfield;   /**< velocity fields */
   pw_real *rec; /**< [nfield][nnode][PW_NODE] */
+  pw_off count; /**< records: nfield * nnode */
+  pw_idx ngroup, nused;
+  pw_idx *used; /**< [nused] groups in use: group g has the records [g, g + 1) * PW_NODE_GROUP */
+  bool *in_use; /**< [ngroup] */
 } pw_nodes;
 
+/** @brief All records zero and in use. @return PW_OK; PW_ERR_ARGUMENT; PW_ERR_MEMORY. */
 pw_status pw_nodes_create(pw_idx nnode, int nfield, pw_nodes *out);
 void pw_nodes_destroy(pw_nodes *nodes);
 
@@ -45,7 +57,27 @@ static inline pw_real *pw_nodes_field(const pw_nodes *nodes, int f)
   return nodes->rec + (pw_off)f * nodes->nnode * PW_NODE;
 }
 
-/** @brief Set every record to zero; threaded. */
+/** @brief All records zero, none in use. */
+void pw_nodes_reset(pw_nodes *nodes);
+
+/** @brief Nodes [first, first + n) of field @p f are in use from now on; those that were not are
+ *  zero. Serial: for set-up, sorts, and lines of some hundred nodes. */
+void pw_nodes_use(pw_nodes *nodes, int f, pw_idx first, pw_idx n);
+
+/** @brief Whether node @p k of field @p f is in use. */
+static inline bool pw_nodes_in_use(const pw_nodes *nodes, int f, pw_idx k)
+{
+  return nodes->in_use[((pw_off)f * nodes->nnode + k) / PW_NODE_GROUP];
+}
+
+/** @brief Records [*first, *last) of the @p i-th group in use. */
+static inline void pw_nodes_group(const pw_nodes *nodes, pw_idx i, pw_off *first, pw_off *last)
+{
+  *first = (pw_off)nodes->used[i] * PW_NODE_GROUP;
+  *last = *first + PW_NODE_GROUP < nodes->count ? *first + PW_NODE_GROUP : nodes->count;
+}
+
+/** @brief Set every record in use to zero; threaded. */
 void pw_nodes_clear(pw_nodes *nodes);
 
 /**

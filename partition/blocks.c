@@ -38,6 +38,14 @@ void pw_blocks_destroy(pw_blocks *b)
   pw_mem_free(&b->colour_start);
   pw_mem_free(&b->colour_block);
   pw_mem_free(&b->point_start);
+  pw_mem_free(&b->share_start);
+  pw_mem_free(&b->share_block);
+  pw_mem_free(&b->share_size);
+  pw_mem_free(&b->share_work);
+  pw_mem_free(&b->share_home);
+  pw_mem_free(&b->share_owner);
+  pw_mem_free(&b->share_order);
+  pw_mem_free(&b->share_load);
   memset(b, 0, sizeof *b);
 }
 

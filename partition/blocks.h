@@ -27,6 +27,15 @@ typedef struct pw_blocks {
   pw_idx *colour_block; /**< [nblock] blocks by colour, ascending in each */
   int nbody;
   pw_idx *point_start; /**< [nblock * nbody + 1] points of (block, body): set by pw_blocks_sort */
+  int nthread;         /**< threads the blocks are divided among (partition/share.h); 0: none yet */
+  int share_room;      /**< threads there is room for */
+  pw_idx *share_start; /**< [(ncolour + 1) * nthread + 1] offsets into share_block, by colour and
+                          thread; those of list ncolour divide all blocks without colours */
+  pw_idx *share_block; /**< [2 nblock] */
+  pw_off *share_size;  /**< [nblock] work of a block in a coloured pass, >= 0: its points */
+  pw_off *share_work;  /**< [nblock] work of a block in the passes without colours, >= 0 */
+  pw_idx *share_home, *share_owner, *share_order; /**< [nblock] scratch of the division */
+  pw_off *share_load;                             /**< [share_room] likewise */
 } pw_blocks;
 
 /**

@@ -8,6 +8,16 @@ pw_off pw_sum_scratch(pw_off n)
   return (n + CHUNK - 1) / CHUNK * PW_SUMS;
 }
 
+static void add_parts(const pw_real *part, pw_off chunks, pw_real *out)
+{
+  for (int s = 0; s < PW_SUMS; s++) {
+    out[s] = 0.0;
+    for (pw_off k = 0; k < chunks; k++) {
+      out[s] += part[k * PW_SUMS + s];
+    }
+  }
+}
+
 void pw_sum_items(pw_sum_fn fn, const void *ctx, pw_off n, int threads, pw_real *part, pw_real *out)
 {
   const pw_off chunks = (n + CHUNK - 1) / CHUNK;
@@ -20,12 +30,44 @@ void pw_sum_items(pw_sum_fn fn, const void *ctx, pw_off n, int threads, pw_real 
       part[k * PW_SUMS + s] = sum[s];
     }
   }
-  for (int s = 0; s < PW_SUMS; s++) {
-    out[s] = 0.0;
-    for (pw_off k = 0; k < chunks; k++) {
-      out[s] += part[k * PW_SUMS + s];
+  add_parts(part, chunks, out);
+}
+
+/* Calls fn for each run of groups in use among records [first, last). */
+static void sum_runs(pw_sum_fn fn, const void *ctx, const pw_nodes *nodes, const pw_off *range,
+                     pw_real *sum)
+{
+  for (pw_off k = range[0]; k < range[1];) {
+    const bool want = nodes->in_use[k / PW_NODE_GROUP];
+    const pw_off first = k;
+    while (k < range[1] && nodes->in_use[k / PW_NODE_GROUP] == want) {
+      k = (k / PW_NODE_GROUP + 1) * PW_NODE_GROUP;
+    }
+    k = k < range[1] ? k : range[1];
+    if (want) {
+      fn(ctx, first, k, sum);
     }
   }
+}
+
+void pw_sum_nodes(pw_sum_fn fn, const void *ctx, const pw_sim *sim, const int field[2],
+                  pw_real *part, pw_real *out)
+{
+  const pw_nodes *nodes = &sim->nodes;
+  const pw_off first = (pw_off)field[0] * nodes->nnode, last = (pw_off)field[1] * nodes->nnode;
+  const pw_off chunks = (last - first + CHUNK - 1) / CHUNK;
+  /* Chunks in turns: those in use are seldom spread evenly. */
+#pragma omp parallel for default(none) shared(fn, ctx, nodes, first, last, part, chunks)           \
+    num_threads(sim->threads) schedule(static, 1)
+  for (pw_off k = 0; k < chunks; k++) {
+    const pw_off from = first + k * CHUNK, to = from + CHUNK < last ? from + CHUNK : last;
+    pw_real sum[PW_SUMS] = {0.0};
+    sum_runs(fn, ctx, nodes, (const pw_off[]){from, to}, sum);
+    for (int s = 0; s < PW_SUMS; s++) {
+      part[k * PW_SUMS + s] = sum[s];
+    }
+  }
+  add_parts(part, chunks, out);
 }
 
 int pw_effect_instance(const pw_sim *sim, const void *param)

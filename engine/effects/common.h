@@ -26,6 +26,15 @@ pw_off pw_sum_scratch(pw_off n);
 void pw_sum_items(pw_sum_fn fn, const void *ctx, pw_off n, int threads, pw_real *part,
                   pw_real *out);
 
+/**
+ * @brief The same over the records of fields [field[0], field[1]), but those not in
+ *        use. Items are numbered from the first record of field 0. Which records are in use does
+ *        not change the sum as long as @p fn adds zero where there is no mass.
+ * @param[out] part  scratch, [pw_sum_scratch(sim->nodes.count)]
+ */
+void pw_sum_nodes(pw_sum_fn fn, const void *ctx, const pw_sim *sim, const int field[2],
+                  pw_real *part, pw_real *out);
+
 /** @brief Which instance of its effect, from 0, has the parameters @p param of @p sim's scene. */
 int pw_effect_instance(const pw_sim *sim, const void *param);
 

@@ -1,0 +1,43 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/**
+ * @file partition/share.h
+ * @brief Which thread runs which block (layer 2).
+ *
+ * Sums at a node come in the order of colour, block and point whoever runs a block, so a division
+ * changes times and never results. There are two: one of each colour, for scatters, and one of all
+ * blocks, for loops over points without colours. Both keep a block with the thread of its
+ * neighbours where they can, because nodes and points that stay with a thread stay in its cache.
+ */
+#ifndef PW_PARTITION_SHARE_H
+#define PW_PARTITION_SHARE_H
+
+#include "partition/blocks.h"
+
+/**
+ * @brief Memory for a division of @p b among @p threads, freed by pw_blocks_destroy().
+ *
+ * Until pw_share_balance() is called there is no division (b->nthread is 0).
+ * @return PW_OK; PW_ERR_MEMORY.
+ */
+pw_status pw_share_create(pw_blocks *b, int threads);
+
+/**
+ * @brief Divide each colour by b->share_size and all blocks by b->share_work, which the caller has
+ *        set; blocks of size 0 belong to nobody and are left out.
+ *
+ * Blocks in their order, cut into parts of equal work, give each a thread to begin with. Then the
+ * largest first: a block stays there while the thread has not more than its part, or else goes to
+ * the thread with the least so far (Graham 1969, "Bounds on multiprocessing timing anomalies",
+ * rule LPT). Allocates nothing.
+ */
+void pw_share_balance(pw_blocks *b);
+
+/**
+ * @brief Bounds on the speed-up that a division leaves, on a quiet machine without overhead.
+ * @param[in]  threads  taken as long as there is no division: bounds of equal numbers of blocks
+ * @param[out] coloured sum of size / sum over colours of the largest share
+ * @param[out] plain    sum of work / the largest share
+ */
+void pw_share_bound(const pw_blocks *b, int threads, pw_real *coloured, pw_real *plain);
+
+#endif /* PW_PARTITION_SHARE_H */
