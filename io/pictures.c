@@ -7,6 +7,7 @@
 
 #include "engine/core/mem.h"
 #include "io/pictures_plot.h"
+#include "io/pictures_series.h"
 #include "io/point_values.h"
 
 enum {
@@ -19,6 +20,7 @@ enum {
   BAR = 34,
   BAR_GAP = 24, /* colour bar: thickness, distance from the axes */
   LOW = 240,    /* a plot less high has its colour bar below */
+  NARROW = 120, /* a plot less wide has one number below */
   BELOW = 110,  /* room for it */
   OUTLINE_POINTS = 16384,
   OUTLINES = 16
@@ -43,9 +45,8 @@ struct picture {
   pw_state_column void_ratio;
   pw_real x[2], y[2];        /* window; m */
   int width, height, px, py; /* canvas and plot area; pixels */
-  pw_real lo, hi, scale;     /* colour range in the unit drawn */
-  const char *unit;
-  pw_real *work; /* [n] values, then outlines */
+  pw_real range[2];          /* colour range of these data; SI */
+  pw_real *work;             /* [n] values, then outlines */
 };
 
 /* ---- quantities ---- */
@@ -141,8 +142,8 @@ static void choose_window(picture *c)
   const pw_real *x = c->scene->output.picture_x_m, *y = c->scene->output.picture_y_m;
   const bool own_x = x[1] > x[0], own_y = y[1] > y[0];
   for (int k = 0; k < 2; k++) {
-    c->x[k] = own_x ? x[k] : m->origin[0] + k * m->cell * m->cells[0];
-    c->y[k] = own_y ? y[k] : m->origin[1] + k * m->cell * m->cells[1];
+    c->x[k] = own_x ? x[k] : k == 0 ? m->origin[0] : pw_mesh_end(m, 0);
+    c->y[k] = own_y ? y[k] : k == 0 ? m->origin[1] : pw_mesh_end(m, 1);
   }
 }
 
@@ -171,36 +172,6 @@ static int ascending(const void *a, const void *b)
   return (x > y) - (x < y);
 }
 
-static void choose_unit(picture *c)
-{
-  const pw_real largest = pw_max(fabs(c->lo), fabs(c->hi));
-  c->unit = c->what->unit;
-  c->scale = 1.0;
-  if (!c->unit) {
-    const bool small = largest < 200.0, big = largest >= 2e7;
-    c->unit = small ? "Pa" : big ? "MPa" : "kPa";
-    c->scale = small ? 1.0 : big ? 1e-6 : 1e-3;
-  }
-  c->lo *= c->scale;
-  c->hi *= c->scale;
-}
-
-/* Ends of the colour bar on round numbers: a 1-2-5 step that divides the range about ten times. */
-static void round_range(picture *c)
-{
-  const pw_real middle = 0.5 * (c->lo + c->hi);
-  const pw_real least = pw_max(1e-6 * fabs(middle), 1e-12);
-  if (c->hi - c->lo < least) {
-    c->lo = middle - pw_max(0.1 * fabs(middle), least);
-    c->hi = middle + pw_max(0.1 * fabs(middle), least);
-  }
-  const pw_real rough = (c->hi - c->lo) / 10.0, decade = pow(10.0, floor(log10(rough)));
-  const pw_real lead = rough / decade;
-  const pw_real step = decade * (lead < 1.5 ? 1.0 : lead < 3.5 ? 2.0 : lead < 7.5 ? 5.0 : 10.0);
-  c->lo = step * floor(c->lo / step + 1e-9);
-  c->hi = step * ceil(c->hi / step - 1e-9);
-}
-
 /* The range covers all but the outermost hundredth of the values on each side, so that a few
  * points at a corner do not take the colours from the rest. */
 static void choose_range(picture *c)
@@ -214,14 +185,12 @@ static void choose_range(picture *c)
       c->work[n++] = v;
     }
   }
-  c->lo = c->hi = 0.0;
+  c->range[0] = c->range[1] = 0.0;
   if (n > 0) {
     qsort(c->work, n, sizeof *c->work, ascending);
-    c->lo = c->work[n / 100];
-    c->hi = c->work[n - 1 - n / 100];
+    c->range[0] = c->work[n / 100];
+    c->range[1] = c->work[n - 1 - n / 100];
   }
-  choose_unit(c);
-  round_range(c);
 }
 
 /* ---- script ---- */
@@ -231,7 +200,7 @@ static void print_data(const picture *c, FILE *f, bool colour)
   pw_real xy[8];
   fprintf(f, "$%s << END\n", colour ? "field" : "other");
   for (pw_idx i = 0; i < c->p->n; i++) {
-    const pw_real v = colour ? c->scale * c->what->value(c, i) : 0.0;
+    const pw_real v = colour ? c->what->value(c, i) : 0.0;
     corners(c, i, xy);
     if (coloured(c, i) != colour || !isfinite(v) || !in_window(c, xy)) {
       continue;
@@ -275,14 +244,14 @@ static void print_bar(const picture *c, FILE *f)
   if (bar_below(c)) {
     fprintf(f, "set colorbox horizontal user origin %g,%g size %g,%g\n", LEFT / w, 75.0 / h,
             c->px / w, BAR / h);
-    fprintf(f, "set cblabel '%s'\n", c->unit);
+    fprintf(f, "set cblabel UNIT\n");
   } else {
     fprintf(f, "set colorbox vertical user origin %g,%g size %g,%g\n", (LEFT + c->px + BAR_GAP) / w,
             BOTTOM / h, BAR / w, c->py / h);
-    fprintf(f, "set label 2 '%s' at screen %g,%g left\n", c->unit, (LEFT + c->px + BAR_GAP) / w,
+    fprintf(f, "set label 2 UNIT at screen %g,%g left\n", (LEFT + c->px + BAR_GAP) / w,
             (h - TOP + 28.0) / h);
   }
-  fprintf(f, "set cbrange [%.9g:%.9g]\nset cbtics scale 0.5\n", c->lo, c->hi);
+  fprintf(f, "set cbtics scale 0.5\n");
 }
 
 static void print_frame(const picture *c, pw_plot *plot)
@@ -297,6 +266,9 @@ static void print_frame(const picture *c, pw_plot *plot)
   fprintf(f, "set xlabel '%s'\nset ylabel '%s'\n", axi ? "radius (m)" : "x (m)",
           axi ? "height (m)" : "y (m)");
   fprintf(f, "set border linewidth 0.8\nset tics out nomirror scale 0.6\nunset key\n");
+  if (c->px < NARROW) {
+    fprintf(f, "set xtics (%.9g)\n", c->x[1]); /* there is no room for more numbers */
+  }
   fprintf(f, "set label 1 '%s, t = %.3f s' at screen %g,%g left font ',20'\n", c->what->title,
           pw_sim_time(c->sim), LEFT / w, (h - 30.0) / h);
   fprintf(f, "set label 3 ");
@@ -315,7 +287,7 @@ static void print_script(const picture *c, pw_plot *plot)
   print_data(c, f, false);
   int outlines = print_outlines(c, f);
   fprintf(f, "set style fill solid noborder\n");
-  fprintf(f, "plot $field using 1:2:3 with filledcurves closed fillcolor palette, "
+  fprintf(f, "plot $field using 1:2:($3*SCALE) with filledcurves closed fillcolor palette, "
              "$other using 1:2 with filledcurves closed fillcolor rgb '#b8b8b8', ");
   if (outlines > 0) {
     fprintf(f, "$outline using 1:2 with lines linecolor rgb 'black' linewidth 1.4, ");
@@ -326,13 +298,16 @@ static void print_script(const picture *c, pw_plot *plot)
 static pw_status draw(picture *c, const char *folder, const quantity *what)
 {
   char name[128];
-  pw_plot plot;
+  pw_plot plot = {.script = NULL};
   c->what = what;
   choose_range(c);
   snprintf(name, sizeof name, "%s_t%06.3fs.png", what->file, pw_sim_time(c->sim));
-  PW_TRY(pw_plot_begin(folder, name, c->width, c->height, &plot));
+  pw_series_picture p = {.own = {c->range[0], c->range[1]}, .width = c->width, .height = c->height};
+  snprintf(p.quantity, sizeof p.quantity, "%s", what->file);
+  snprintf(p.unit, sizeof p.unit, "%s", !what->unit ? "stress" : *what->unit ? what->unit : "-");
+  PW_TRY(pw_series_open(folder, name, &p, &plot.script));
   print_script(c, &plot);
-  return pw_plot_end(&plot);
+  return pw_series_draw(folder, name, plot.script);
 }
 
 static pw_status draw_all(picture *c, const char *folder)
@@ -355,6 +330,11 @@ static pw_status draw_all(picture *c, const char *folder)
   }
   PW_TRY(draw(c, folder, &mean));
   return draw(c, folder, &velocity);
+}
+
+pw_status pw_pictures_finish(const char *folder)
+{
+  return pw_series_finish(folder);
 }
 
 pw_status pw_pictures_fields(const char *folder, const pw_sim *sim)

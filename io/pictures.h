@@ -8,6 +8,9 @@
  * (soil) the others (a pile) are grey and do not count for the colour range. Which fields: the
  * vertical and radial (plane strain: horizontal) stress, void ratio, mobilised friction angle
  * where the materials have them; mean stress and speed where no material has them.
+ *
+ * All pictures of a quantity in one folder have one colour range, that of all of them: while a run
+ * goes on, of those drawn so far; pw_pictures_finish draws the earlier ones again.
  */
 #ifndef PW_IO_PICTURES_H
 #define PW_IO_PICTURES_H
@@ -22,6 +25,13 @@
  *         PW_ERR_MEMORY.
  */
 pw_status pw_pictures_fields(const char *folder, const pw_sim *sim);
+
+/**
+ * @brief At the end of a run: give all pictures of a quantity the same colour range and remove the
+ *        files kept for that ("name.png.field"). A missing folder is fine.
+ * @return as pw_pictures_fields.
+ */
+pw_status pw_pictures_finish(const char *folder);
 
 /**
  * @brief Pictures of the columns of @p history (a file of io/history.h) against time:

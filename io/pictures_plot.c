@@ -13,6 +13,12 @@ extern char **environ;
 
 enum { MESSAGE = 256 };
 
+static bool is_svg(const char *path)
+{
+  size_t n = strlen(path);
+  return n > 4 && strcmp(path + n - 4, ".svg") == 0;
+}
+
 pw_status pw_plot_begin(const char *folder, const char *name, int width, int height, pw_plot *out)
 {
   PW_TRY(pw_path_join(folder, name, out->path));
@@ -21,8 +27,8 @@ pw_status pw_plot_begin(const char *folder, const char *name, int width, int hei
              "%s: the path is too long", out->path);
   out->script = fopen(out->commands, "w");
   PW_REQUIRE(out->script, PW_ERR_FILE, "cannot write %s: %s", out->commands, strerror(errno));
-  fprintf(out->script, "set terminal pngcairo size %d,%d font 'DejaVu Sans,16' linewidth 1.5\n",
-          width, height);
+  fprintf(out->script, "set terminal %s size %d,%d font 'DejaVu Sans,16' linewidth 1.5\n",
+          is_svg(out->path) ? "svg" : "pngcairo", width, height);
   fprintf(out->script, "set output ");
   pw_plot_text(out, out->temp);
   fprintf(out->script, "\nset encoding utf8\n");
@@ -118,6 +124,20 @@ static bool whole_png(const char *path)
   return good;
 }
 
+/* An SVG file ends with the tag that closes it. */
+static bool whole_svg(const char *path)
+{
+  char bytes[17] = "";
+  FILE *file = fopen(path, "rb");
+  if (!file) {
+    return false;
+  }
+  bool good = fseek(file, -16, SEEK_END) == 0 && fread(bytes, 1, 16, file) == 16 &&
+              strstr(bytes, "</svg>") != NULL;
+  fclose(file);
+  return good;
+}
+
 static pw_status draw(const pw_plot *plot)
 {
   FILE *message = tmpfile();
@@ -125,7 +145,8 @@ static pw_status draw(const pw_plot *plot)
   pw_status status = run_gnuplot(plot, message);
   fclose(message);
   PW_TRY(status);
-  PW_REQUIRE(whole_png(plot->temp), PW_ERR_FILE,
+  bool whole = is_svg(plot->path) ? whole_svg(plot->temp) : whole_png(plot->temp);
+  PW_REQUIRE(whole, PW_ERR_FILE,
              "cannot write %s: gnuplot left an incomplete picture (no room on the disk?)",
              plot->path);
   return pw_atomic_commit(plot->temp, plot->path);

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /**
  * @file io/pictures_plot.h
- * @brief One PNG file from one gnuplot script (layer 4).
+ * @brief One PNG or SVG file from one gnuplot script (layer 4).
  *
  * The script, data included, is a file beside the picture ("name.png.gp") that is removed when
  * gnuplot has read it; the picture is checked for completeness before it replaces an old one.
@@ -20,7 +20,8 @@ typedef struct pw_plot {
 } pw_plot;
 
 /**
- * @brief Start the picture FOLDER/NAME of @p width x @p height pixels.
+ * @brief Start the picture FOLDER/NAME of @p width x @p height pixels; a name that ends with .svg
+ *        makes an SVG file, every other one a PNG file.
  * @return PW_OK; PW_ERR_FILE when the path is too long or the script cannot be written.
  */
 pw_status pw_plot_begin(const char *folder, const char *name, int width, int height, pw_plot *out);

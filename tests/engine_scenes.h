@@ -6,30 +6,14 @@
 #ifndef PW_TESTS_ENGINE_SCENES_H
 #define PW_TESTS_ENGINE_SCENES_H
 
+#include "bench/sand.h"
 #include "tests/contact_helpers.h"
 
-/** Sand of the thesis' Table 3.1 (Giridharan 2016), e = 0.65. */
+/** Sand of the thesis' pile, e = 0.65. */
 static inline int test_sand(pw_scene *scene, bool intergranular)
 {
-  static const struct {
-    const char *key;
-    pw_real value;
-  } table[] = {{"grain_density_kg_m3", 2600.0},
-               {"void_ratio", 0.65},
-               {"critical_friction_angle_deg", 30.0},
-               {"cohesion_shift_pa", 1600.0},
-               {"granular_hardness_pa", 5.8e9},
-               {"exponent_n", 0.28},
-               {"void_ratio_d0", 0.53},
-               {"void_ratio_c0", 0.84},
-               {"void_ratio_i0", 1.0},
-               {"exponent_alpha", 0.13},
-               {"exponent_beta", 1.0}};
   int m = test_material(scene, "hypoplastic_sand");
-  for (size_t k = 0; k < sizeof table / sizeof table[0]; k++) {
-    test_param(scene, m, table[k].key, table[k].value);
-  }
-  test_param(scene, m, "intergranular_strain", intergranular ? 1.0 : 0.0);
+  bench_sand(&scene->material[m], intergranular);
   return m;
 }
 

@@ -106,11 +106,81 @@ static void forces_balance_momentum(void **state)
   }
 }
 
+/* Expanding ring, radial: P_rr and P_tt from the determinant of F = diag(u', 1, u / R) + I, with
+ * F^-1 (F F^T - I) = F^T - F^-1. */
+static void ring_piola(const pw_mms *m, double r, double t, double *rr, double *tt)
+{
+  double u[5][2];
+  for (int k = 0; k < 5; k++) {
+    pw_mms_displacement(m, (double[]){r + (k - 2) * step_x, 0.3}, t, u[k]);
+  }
+  double f = 1.0 + (8.0 * (u[3][0] - u[1][0]) - (u[4][0] - u[0][0])) / (12.0 * step_x);
+  double hoop = 1.0 + u[2][0] / r, volume = m->lambda * log(f * hoop);
+  *rr = volume / f + m->mu * (f - 1.0 / f);
+  *tt = volume / hoop + m->mu * (hoop - 1.0 / hoop);
+}
+
+/* b_r = acceleration - (dP_rr/dR + (P_rr - P_tt)/R) / rho. */
+static double ring_balance(const pw_mms *m, double r, double t)
+{
+  const double step_t = 1e-3 / pw_mms_speed(m), at[4] = {-2.0, -1.0, 1.0, 2.0};
+  double u[5][2], rr[4], tt[4], here[2];
+  for (int k = 0; k < 5; k++) {
+    pw_mms_displacement(m, (double[]){r, 0.3}, t + (k - 2) * step_t, u[k]);
+  }
+  for (int k = 0; k < 4; k++) {
+    ring_piola(m, r + 10.0 * at[k] * step_x, t, &rr[k], &tt[k]);
+  }
+  ring_piola(m, r, t, &here[0], &here[1]);
+  double slope = (8.0 * (rr[2] - rr[1]) - (rr[3] - rr[0])) / (120.0 * step_x);
+  double inertia =
+      (16.0 * (u[1][0] + u[3][0]) - u[0][0] - u[4][0] - 30.0 * u[2][0]) / (12.0 * step_t * step_t);
+  return inertia - (slope + (here[0] - here[1]) / r) / m->density;
+}
+
+static void ring_forces_balance_momentum(void **state)
+{
+  (void)state;
+  const double young = 1e7, nu[2] = {0.0, 0.3};
+  uint64_t seed = 3;
+  for (int j = 0; j < 2; j++) {
+    pw_mms m = {.kind = PW_MMS_RING,
+                .amplitude = 0.1,
+                .lambda = young * nu[j] / ((1.0 + nu[j]) * (1.0 - 2.0 * nu[j])),
+                .mu = 0.5 * young / (1.0 + nu[j]),
+                .density = 1000.0};
+    double error = 0.0, size = 0.0;
+    for (int k = 0; k < 400; k++) {
+      double r = 0.41 + 0.18 * test_random(&seed), t = 2.0 * test_random(&seed) / pw_mms_speed(&m);
+      double expect = ring_balance(&m, r, t), b[2];
+      pw_mms_body_force(&m, (double[]){r, 0.3}, t, b);
+      assert_true(b[1] == 0.0);
+      error = fmax(error, fabs(b[0] - expect));
+      size = fmax(size, fabs(expect));
+    }
+    assert_near(error / size, 0.0, 2e-6); /* truncation of the fourth-order differences */
+  }
+}
+
+/* Places and size of Wallstedt and Guilkey's ring: rims with F_r = 1, u(0.6) = A sin(c pi t). */
+static void rims_of_the_ring_are_free(void **state)
+{
+  (void)state;
+  pw_mms m = {.kind = PW_MMS_RING, .amplitude = 0.1, .mu = 5e6, .density = 1000.0};
+  double t = 0.3 / pw_mms_speed(&m), u[2], rr, tt;
+  pw_mms_displacement(&m, (double[]){0.6, 0.0}, t, u);
+  assert_relative(u[0], 0.1 * sin(0.3 * acos(-1.0)), 1e-13);
+  for (int k = 0; k < 2; k++) {
+    ring_piola(&m, k == 0 ? 0.4 : 0.6, t, &rr, &tt);
+    assert_near(rr / tt, 0.0, 1e-9);
+  }
+}
+
 static void velocity_is_the_rate_of_displacement(void **state)
 {
   (void)state;
   uint64_t seed = 5;
-  for (int kind = 0; kind < 2; kind++) {
+  for (int kind = PW_MMS_AXIS_ALIGNED; kind <= PW_MMS_RING; kind++) {
     for (int course = 0; course < 2; course++) {
       pw_mms m = motion(kind, course, 0.3);
       double scale = 0.3 * 3.1416 * pw_mms_speed(&m);
@@ -142,6 +212,8 @@ int main(void)
 {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(forces_balance_momentum),
+      cmocka_unit_test(ring_forces_balance_momentum),
+      cmocka_unit_test(rims_of_the_ring_are_free),
       cmocka_unit_test(velocity_is_the_rate_of_displacement),
       cmocka_unit_test(wave_speeds_are_those_of_the_catalogue),
   };

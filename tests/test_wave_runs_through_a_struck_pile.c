@@ -167,12 +167,14 @@ static void momentum_is_that_of_the_hammer(void **state)
 
 typedef struct {
   double v_rms, toe_peak, plateau; /* m/s at 1 MPa; of the pressure; of the pressure */
+  double mean;                     /* toe stress between 0.030 and 0.045 s over the pressure */
 } toe_record;
 
 static toe_record watch_fixed_toe(const pile *c)
 {
   pw_sim *sim = pile_sim(c);
-  toe_record r = {0.0, 0.0, 0.0};
+  toe_record r = {0.0, 0.0, 0.0, 0.0};
+  double seconds = 0.0;
   const double stop[2] = {0.0375, 0.125}; /* middle of the plateau; after the pulse */
   for (int k = 0; k < 2; k++) {
     double p, v;
@@ -180,6 +182,10 @@ static toe_record watch_fixed_toe(const pile *c)
       assert_ok(pw_sim_step(sim, stop[k] - sim->time));
       near(sim, c, length - 0.25 * length / c->n, &p, &v);
       r.toe_peak = fmax(r.toe_peak, p);
+      if (sim->time > 0.030 && sim->time <= 0.045) {
+        r.mean += p * sim->dt;
+        seconds += sim->dt;
+      }
     }
     r.plateau = k == 0 ? p : r.plateau;
   }
@@ -189,25 +195,35 @@ static toe_record watch_fixed_toe(const pile *c)
     mass += p->mass[i];
     sum += p->mass[i] * (p->v[i] * p->v[i] + p->v[p->ld + i] * p->v[p->ld + i]);
   }
+  r.mean /= seconds;
   r.v_rms = sqrt(sum / mass) * 1e6 / c->pressure;
   pw_sim_destroy(&sim);
   return r;
 }
 
-/* Acceptance of verification A2. The sharp pulse rings longer with MUSL, whose remapping multiplies
- * the dispersion of the grid: its values are printed, those of USL are held to the figures. */
+/* Acceptance of verification A2: 1 % at 0.0375 s, at most 25 % over. A sharp front in a medium
+ * whose short waves lag, omega = c k (1 - beta (k h)^2), becomes the integral of the Airy function,
+ * whose maximum is 1.2743 whatever beta and h: a scheme that dissipates nothing overshoots by
+ * 27.4 % at any resolution, and its ripples at a fixed time behind the front fade with h^(1/2) only.
+ * MUSL (like USF) is of that kind: its peak is held to that figure and its plateau as a mean, USL,
+ * which takes energy out of short waves, to the acceptance. */
 static void toe_plateau_and_overshoot(void **state)
 {
   (void)state;
   for (int update = PW_MUSL; update <= PW_USL; update++) {
-    for (int k = 0; k < 2; k++) {
-      pile c = {80, update, false, 1e3, k == 0 ? 0.0 : 0.005, 0.0};
+    for (int k = 0; k < 3; k++) {
+      pile c = {k == 1 ? 160 : 80, update, false, 1e3, k == 2 ? 0.005 : 0.0, 0.0};
       toe_record r = watch_fixed_toe(&c);
-      print_message("update %d, flanks %g s: toe plateau %.4f q, peak %.4f q (exact 2)\n", update,
-                    c.rise, r.plateau, r.toe_peak);
-      if (update == PW_USL || k == 1) {
+      print_message(
+          "update %d, %d cells, flanks %g s: toe plateau %.4f q, mean %.4f q, peak %.4f q "
+          "(exact 2)\n",
+          update, c.n, c.rise, r.plateau, r.mean, r.toe_peak);
+      assert_relative(r.mean, 2.0, 0.01);
+      if (update == PW_USL || k == 2) {
         assert_relative(r.plateau, 2.0, 0.01);
         assert_true(r.toe_peak <= 2.0 * 1.25);
+      } else {
+        assert_relative(r.toe_peak, 2.0 * 1.2743, 0.005);
       }
     }
   }

@@ -19,14 +19,16 @@
 /* clang-format off */
 static const pw_key keys[] = {
   {"body", PW_KEY_BODY, AT(body), 0, 0, NULL, NULL, NULL, "neo-Hookean body that is driven"},
-  {"kind", PW_KEY_CHOICE, AT(kind), 0, 0, NULL, "axis_aligned_mms|vortex_mms", NULL,
-   "manufactured motion: standing waves of a unit square, or the vortex of a ring 0.75 to 1.25 m"},
+  {"kind", PW_KEY_CHOICE, AT(kind), 0, 0, NULL, 
+   "axis_aligned_mms|vortex_mms|expanding_ring_mms", NULL,
+   "manufactured motion: standing waves of a unit square, the vortex of a ring 0.75 to 1.25 m, or "
+   "(axisymmetric) the radial motion of a ring 0.4 to 0.6 m"},
   {"amplitude", PW_KEY_REAL, AT(amplitude), -100, 100, NULL, NULL, NULL,
-   "of the displacement in m (axis aligned) or of the rotation in rad (vortex)"},
+   "of the displacement in m, or of the rotation in rad (vortex)"},
   {"course", PW_KEY_CHOICE, AT(course), 0, 0, "sine", "sine|one_minus_cosine", "kind=vortex_mms",
    "rotation in time: sin(c pi t) or (1 - cos(2 c pi t)) / 2"},
   {"origin_m", PW_KEY_PAIR, AT(origin_m), -1e6, 1e6, "[0, 0]", NULL, NULL,
-   "lower left corner of the square, or centre of the ring"},
+   "lower left corner of the square, or centre of the vortex"},
   {0}};
 /* clang-format on */
 
@@ -58,7 +60,15 @@ static pw_status check(const pw_scene *scene, const void *param)
   const pw_scene_material *m = &scene->material[scene->body[p->body].material];
   PW_REQUIRE(strcmp(m->model->name, "neo_hookean") == 0, PW_ERR_SCENE,
              "body '%s' must be neo_hookean, it is %s", scene->body[p->body].name, m->model->name);
-  PW_REQUIRE(scene->geometry == PW_PLANE, PW_ERR_SCENE, "the motions are those of plane strain");
+  bool ring = p->kind == PW_MMS_RING;
+  PW_REQUIRE(scene->geometry == (ring ? PW_AXI : PW_PLANE), PW_ERR_SCENE,
+             "the motion asked for is one of %s", ring ? "axisymmetry" : "plane strain");
+  pw_real bulk = parameter(m, "bulk_modulus_pa"), mu = parameter(m, "shear_modulus_pa");
+  PW_REQUIRE(!ring || fabs(bulk - 2.0 / 3.0 * mu) <= 1e-6 * mu, PW_ERR_SCENE,
+             "the rims of the expanding ring are free of traction for a Poisson's ratio of 0 only: "
+             "bulk_modulus_pa must be 2/3 of shear_modulus_pa");
+  PW_REQUIRE(!ring || p->origin_m[0] == 0.0, PW_ERR_SCENE,
+             "the axis of the expanding ring is x = 0, not origin_m = [%g, ...]", p->origin_m[0]);
   return PW_OK;
 }
 

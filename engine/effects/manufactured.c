@@ -75,8 +75,42 @@ static void vortex_force(const pw_mms *m, const pw_real *x0, pw_real t, pw_real 
   b[1] = radial * s + along * c;
 }
 
+/* Expanding ring: f(R) with f' = 0 at both rims and f(0.6) = 1, and its first two derivatives. */
+static void ring_profile(pw_real r, pw_real *f)
+{
+  const pw_real ri = 0.4, ro = 0.6, scale = 1.0 / (ro * ro * (ro - 3.0 * ri));
+  const pw_real c1 = -6.0 * ri * ro * scale, c2 = 3.0 * (ro + ri) * scale, c3 = -2.0 * scale;
+  f[0] = ((c3 * r + c2) * r + c1) * r;
+  f[1] = (3.0 * c3 * r + 2.0 * c2) * r + c1;
+  f[2] = 6.0 * c3 * r + 2.0 * c2;
+}
+
+/* With the principal stretches F_r = 1 + u', F_t = 1 + u / R, F_z = 1 the first Piola-Kirchhoff
+ * stress has P_k = mu (F_k - 1 / F_k) + lambda ln(F_r F_t) / F_k, and
+ * b_r = u.. - (P_r' + (P_r - P_t) / R) / rho, where F_r' = u'', F_t' = (F_r - F_t) / R. */
+static void ring_force(const pw_mms *m, const pw_real *x0, pw_real t, pw_real *b)
+{
+  pw_real f[3], r = x0[0], w = pi * pw_mms_speed(m), a = m->amplitude * sin(w * t);
+  ring_profile(r, f);
+  pw_real fr = 1.0 + a * f[1], ft = 1.0 + a * f[0] / r, dr = a * f[2], dt = (fr - ft) / r;
+  pw_real volume = log(fr * ft);
+  pw_real slope = m->mu * (1.0 + 1.0 / (fr * fr)) * dr +
+                  m->lambda / fr * (dr / fr + dt / ft - volume * dr / fr);
+  pw_real difference =
+      m->mu * (fr - 1.0 / fr - ft + 1.0 / ft) + m->lambda * volume * (1.0 / fr - 1.0 / ft);
+  b[0] = -w * w * a * f[0] - (slope + difference / r) / m->density;
+  b[1] = 0.0;
+}
+
 void pw_mms_displacement(const pw_mms *m, const pw_real *x0, pw_real t, pw_real *u)
 {
+  if (m->kind == PW_MMS_RING) {
+    pw_real f[3];
+    ring_profile(x0[0], f);
+    u[0] = m->amplitude * sin(pi * pw_mms_speed(m) * t) * f[0];
+    u[1] = 0.0;
+    return;
+  }
   if (m->kind == PW_MMS_VORTEX) {
     vortex_displacement(m, x0, t, u);
     return;
@@ -88,6 +122,13 @@ void pw_mms_displacement(const pw_mms *m, const pw_real *x0, pw_real t, pw_real 
 
 void pw_mms_velocity(const pw_mms *m, const pw_real *x0, pw_real t, pw_real *v)
 {
+  if (m->kind == PW_MMS_RING) {
+    pw_real f[3], w = pi * pw_mms_speed(m);
+    ring_profile(x0[0], f);
+    v[0] = m->amplitude * w * cos(w * t) * f[0];
+    v[1] = 0.0;
+    return;
+  }
   if (m->kind == PW_MMS_VORTEX) {
     vortex_velocity(m, x0, t, v);
     return;
@@ -115,6 +156,8 @@ void pw_mms_body_force(const pw_mms *m, const pw_real *x0, pw_real t, pw_real *b
 {
   if (m->kind == PW_MMS_VORTEX) {
     vortex_force(m, x0, t, b);
+  } else if (m->kind == PW_MMS_RING) {
+    ring_force(m, x0, t, b);
   } else {
     aligned_force(m, x0, t, b);
   }

@@ -1,8 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /**
  * @file engine/effects/manufactured.h
- * @brief Manufactured motions of a neo-Hookean body in plane strain, and their body forces
- *        (layer 3).
+ * @brief Manufactured motions of a neo-Hookean body, and their body forces (layer 3).
  *
  * Material: P = lambda ln(J) F^-T + mu F^-1 (F F^T - I), c = sqrt(E / rho).
  * Axis aligned (Wallstedt and Guilkey, J. Comput. Phys. 227, 2008): the unit square 0 <= X, Y <= 1
@@ -10,6 +9,10 @@
  * Vortex (Kamojjala et al., Engng with Computers 31, 2015): the ring 0.75 <= R <= 1.25 turns by
  * alpha(R, t) = A g(t) H(R), H = ((4 R - 3)(4 R - 5))^2, g = sin(c pi t) or (1 - cos(2 pi c t)) / 2;
  * its rims do not move and carry no traction, and its volume does not change.
+ * Both are motions of plane strain. Expanding ring (Wallstedt and Guilkey 2008), axisymmetric with
+ * F_z = 1: 0.4 <= R <= 0.6 moves by u_r = A sin(c pi t) f(R), f = c3 R^3 + c2 R^2 + c1 R with
+ * f' = 0 at both rims and f(0.6) = 1; without lateral contraction (lambda = 0) its rims carry no
+ * traction.
  */
 #ifndef PW_EFFECTS_MANUFACTURED_H
 #define PW_EFFECTS_MANUFACTURED_H
@@ -19,7 +22,7 @@
 typedef struct pw_mms {
   int kind;           /**< pw_body_force_kind */
   int course;         /**< pw_mms_course of the vortex */
-  pw_real amplitude;  /**< A: m (axis aligned), rad (vortex) */
+  pw_real amplitude;  /**< A: m (axis aligned, expanding ring), rad (vortex) */
   pw_real lambda, mu; /**< Lame constants; Pa */
   pw_real density;    /**< kg/m3 */
 } pw_mms;
