@@ -162,6 +162,9 @@ static pw_exit dispatch(int argc, char **argv)
   if (strcmp(command, "run") == 0 || strcmp(command, "check") == 0) {
     return with_scene(argc - 1, rest, argv);
   }
+  if (strcmp(command, "element") == 0) {
+    return (pw_exit)pw_main_element(argc - 1, rest);
+  }
   if (strcmp(command, "keys") == 0) {
     return print_table(argc - 1, rest, pw_keys_print);
   }

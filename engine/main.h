@@ -21,6 +21,9 @@
  */
 bool pw_main_bind_threads(char **argv, int threads);
 
+/** @brief The command `element`. @return its exit status. */
+int pw_main_element(int argc, char **argv);
+
 /** @brief Help of the program, or of @p command when it names one. @return NULL when it names
  *  none. */
 const char *pw_main_help(const char *command);

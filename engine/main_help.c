@@ -18,6 +18,7 @@ static const char help_program[] =
     "\n"
     "  run SCENE.yaml     run a scene: pictures, histories, ParaView files, checkpoints\n"
     "  check SCENE.yaml   read and set up a scene, say what it would do, write nothing\n"
+    "  element TEST.yaml  laboratory tests of a material: triaxial, oedometer, shear, any path\n"
     "  keys               every key a scene may hold: unit, default, range, meaning\n"
     "  list               materials, effects and choices of the method\n"
     "  COMMAND --help     more about a command\n"
@@ -62,14 +63,38 @@ static const char help_check[] =
     "usage: pilewright check SCENE.yaml [--threads N] [--set key.path=value]...\n"
     "\n"
     "Read and set up a scene without running it, and print the effects with the places in a\n"
-    "step where they act, the fields and bytes of a point, points, nodes, elements, blocks and\n"
-    "colours, the first stable step, and estimates of steps, memory and time. Nothing is\n"
-    "written. All errors of a scene are printed at once, as file:line:column.\n"
+    "step where they act, the fields and bytes of a point, the sizes of cells, points, nodes,\n"
+    "elements, blocks and colours, the first stable step, and estimates of steps, memory and\n"
+    "time. Nothing is written. All errors of a scene are printed at once, as\n"
+    "file:line:column.\n"
     "\n"
-    "Example:\n"
+    "Examples:\n"
     "  pilewright check pile.yaml --set grid.cell_m=0.0625\n"
+    "  pilewright check pile.yaml --set 'grid.fine_x_m=[0,1]' --set grid.growth=1.1\n"
     "\n"
     "Exit status: 0 the scene can be run, 1 wrong command line, 2 bad scene.\n";
+
+static const char help_element[] =
+    "usage: pilewright element TEST.yaml [options]\n"
+    "\n"
+    "Run laboratory tests on one element of a material, without a mesh: isotropic and\n"
+    "oedometric compression, triaxial, biaxial and simple shear tests, drained or not, mixed\n"
+    "control of strain and stress, and strain paths from CSV files, one stage after another.\n"
+    "Materials are written as in a scene.\n"
+    "\n"
+    "  --out DIR             output folder; default: out/NAME, from the test file's name\n"
+    "  --set key.path=value  change one key of the test; may be repeated: stages.0.steps=10\n"
+    "  --keys                print the keys of a test file\n"
+    "\n"
+    "Written to the folder: element.csv, with the units in its column names, and curves as PNG\n"
+    "and SVG files in pictures/. All errors of a test are printed at once, as\n"
+    "file:line:column.\n"
+    "\n"
+    "Example:\n"
+    "  pilewright element cases/element_tests/triaxial_clay.yaml --out out/triaxial\n"
+    "\n"
+    "Exit status: 0 finished, 1 wrong command line, 2 bad test, 3 a step cannot be made (the\n"
+    "rows before it are written).\n";
 
 static const char help_keys[] =
     "usage: pilewright keys\n"
@@ -86,7 +111,11 @@ const char *pw_main_help(const char *command)
 {
   static const struct {
     const char *command, *text;
-  } row[] = {{"run", help_run}, {"check", help_check}, {"keys", help_keys}, {"list", help_list}};
+  } row[] = {{"run", help_run},
+             {"check", help_check},
+             {"element", help_element},
+             {"keys", help_keys},
+             {"list", help_list}};
 
   if (!command) {
     return help_program;

@@ -128,6 +128,11 @@ static void print_table(FILE *out, const char *title, const char *brief, const p
   }
 }
 
+void pw_keys_print_table(FILE *out, const char *title, const char *brief, const pw_key *keys)
+{
+  print_table(out, title, brief, keys);
+}
+
 void pw_keys_print(FILE *out)
 {
   char title[3 * PW_NAME];
@@ -142,6 +147,8 @@ void pw_keys_print(FILE *out)
     snprintf(title, sizeof title, "materials: NAME: with model: %s", pw_material_at(i)->name);
     print_table(out, title, pw_material_at(i)->brief, pw_material_at(i)->keys);
   }
+  fprintf(out, "\nmaterials: NAME: with soil: SET\n  model and keys from the file SET.yaml in a "
+               "folder soils or cases/soils here or above; keys\n  beside soil: replace its own\n");
   print_table(out, "bodies: NAME:", NULL, pw_scene_keys_body);
   print_table(out, "bodies: NAME: refine: (a list)", "points in a box get this size or smaller",
               pw_scene_keys_refine);
@@ -149,6 +156,10 @@ void pw_keys_print(FILE *out)
     const pw_effect *e = pw_effect_at(i);
     snprintf(title, sizeof title, "%s: (effect%s)", e->name, e->many ? ", a list" : "");
     print_table(out, title, e->brief, e->keys);
+    if (e->rows) {
+      snprintf(title, sizeof title, "%s: %s: (a list)", e->name, e->rows->name);
+      print_table(out, title, e->rows->meaning, e->rows->keys);
+    }
   }
 }
 

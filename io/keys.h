@@ -23,6 +23,9 @@ void pw_key_range(const pw_key *key, char *out);
 /** @brief What a key holds, as shown to users: "number", "two numbers", ... */
 const char *pw_key_type_text(pw_key_type type);
 
+/** @brief One table of keys under a title; @p brief may be NULL. */
+void pw_keys_print_table(FILE *out, const char *title, const char *brief, const pw_key *keys);
+
 /** @brief All input keys of all sections, materials and effects with unit, type, range, default,
  *  condition and meaning. */
 void pw_keys_print(FILE *out);

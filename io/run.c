@@ -106,9 +106,15 @@ static void print_start(run *r)
   }
   pw_sim_report(r->sim, &report);
   fprintf(r->out, "pilewright %s (%s): %s\n", pw_version(), pw_git_revision(), o->scene_file);
-  fprintf(r->out, "%d points, %d elements of %g m in %d blocks of %d colours, %d thread%s%s\n",
-          report.points, report.elements, r->scene.grid.cell_m, report.blocks, report.colours,
-          report.threads, report.threads == 1 ? "" : "s", o->bound ? " bound to cores" : "");
+  const pw_mesh *mesh = pw_sim_mesh(r->sim);
+  char sizes[64];
+  int used = snprintf(sizes, sizeof sizes, "%g m", mesh->cell);
+  if (mesh->graded) {
+    snprintf(sizes + used, sizeof sizes - (size_t)used, " to %g m", pw_mesh_largest_cell(mesh));
+  }
+  fprintf(r->out, "%d points, %d elements of %s in %d blocks of %d colours, %d thread%s%s\n",
+          report.points, report.elements, sizes, report.blocks, report.colours, report.threads,
+          report.threads == 1 ? "" : "s", o->bound ? " bound to cores" : "");
   if (r->resumed) {
     fprintf(r->out, "going on from t = %.6g s, step %lld\n", report.time_s,
             (long long)report.steps);

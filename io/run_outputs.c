@@ -127,6 +127,7 @@ pw_status pw_run_outputs_finish(pw_run_outputs *o)
   const pw_scene *scene = pw_sim_scene(o->sim);
 
   if (scene->output.pictures) {
+    PW_TRY(warn_of(o, pw_pictures_finish(o->folder->pictures)));
     PW_TRY(warn_of(o, pw_pictures_curves(o->folder->pictures, o->folder->history, scene->title)));
   }
   return pw_run_outputs_checkpoint(o);

@@ -54,14 +54,16 @@ static void read_part(pw_reader *r, const char *name, const pw_key *keys, pw_rea
   }
 }
 
-static void read_scene(pw_reader *r)
+static void read_scene(pw_reader *r, void *unused)
 {
+  (void)unused;
   pw_scene_default(r->scene);
   read_top(r);
   read_part(r, "grid", pw_scene_keys_grid, &r->grid);
   read_part(r, "time", pw_scene_keys_time, &r->time);
   read_part(r, "method", pw_scene_keys_method, &r->method);
   read_part(r, "output", pw_scene_keys_output, &r->output);
+  pw_reader_soils(r);
   pw_reader_materials(r);
   pw_reader_bodies(r);
   pw_reader_effects(r);
@@ -99,7 +101,7 @@ static pw_yaml_node *make_tree(int nset, pw_yaml_messages *m)
   return root;
 }
 
-static pw_status finish(pw_yaml_messages *m, const pw_scene *scene, pw_scene *out, char **messages)
+static pw_status finish(pw_yaml_messages *m, char **messages)
 {
   pw_status status = PW_OK;
   if (m->n > 0) {
@@ -114,29 +116,37 @@ static pw_status finish(pw_yaml_messages *m, const pw_scene *scene, pw_scene *ou
     status = pw_error_set(PW_ERR_MEMORY, __FILE__, __LINE__, __func__, "%s: no memory to read it",
                           m->name);
   }
-  if (status == PW_OK) {
-    *out = *scene;
+  return status;
+}
+
+static pw_status read_text(const char *text, size_t length, const pw_reader_source *from,
+                           const pw_reader_use *use, char **messages)
+{
+  pw_yaml_messages m = {.name = from->name, .text = text, .length = length, .set = from->set};
+  *messages = NULL;
+  pw_scene *scene = calloc(1, sizeof *scene);
+  m.out_of_memory = !scene;
+  pw_yaml_node *root = scene ? make_tree(from->nset, &m) : NULL;
+  if (root) {
+    pw_reader reader = {.m = &m, .root = root, .scene = scene};
+    use->read(&reader, use->ctx);
   }
+  pw_status status = finish(&m, messages);
+  if (status == PW_OK) {
+    *use->out = *scene;
+  }
+  pw_yaml_free(&root);
+  pw_yaml_messages_free(&m);
+  free(scene);
   return status;
 }
 
 pw_status pw_scene_read_text(const char *text, size_t length, const char *name, int nset,
                              const char *const *set, pw_scene *out, char **messages)
 {
-  pw_yaml_messages m = {.name = name, .text = text, .length = length, .set = set};
-  *messages = NULL;
-  pw_scene *scene = malloc(sizeof *scene);
-  m.out_of_memory = !scene;
-  pw_yaml_node *root = scene ? make_tree(nset, &m) : NULL;
-  if (root) {
-    pw_reader reader = {.m = &m, .root = root, .scene = scene};
-    read_scene(&reader);
-  }
-  pw_status status = finish(&m, scene, out, messages);
-  pw_yaml_free(&root);
-  pw_yaml_messages_free(&m);
-  free(scene);
-  return status;
+  const pw_reader_source from = {name, nset, set};
+  const pw_reader_use use = {read_scene, NULL, out};
+  return read_text(text, length, &from, &use, messages);
 }
 
 /* "path: error: why" as the messages of a file that cannot be read. */
@@ -151,9 +161,9 @@ static pw_status unreadable(const char *path, const char *why, char **messages)
                       "%s: cannot read it: %s", path, why);
 }
 
-pw_status pw_scene_read_file(const char *path, int nset, const char *const *set, pw_scene *out,
-                             char **messages)
+pw_status pw_reader_file(const pw_reader_source *from, const pw_reader_use *use, char **messages)
 {
+  const char *path = from->name;
   *messages = NULL;
   FILE *file = fopen(path, "rb");
   if (!file) {
@@ -165,8 +175,16 @@ pw_status pw_scene_read_file(const char *path, int nset, const char *const *set,
   bool failed = !text || ferror(file);
   const char *why = strerror(text ? errno : ENOMEM);
   fclose(file);
-  pw_status status = failed ? unreadable(path, why, messages)
-                            : pw_scene_read_text(text, length, path, nset, set, out, messages);
+  pw_status status =
+      failed ? unreadable(path, why, messages) : read_text(text, length, from, use, messages);
   free(text);
   return status;
+}
+
+pw_status pw_scene_read_file(const char *path, int nset, const char *const *set, pw_scene *out,
+                             char **messages)
+{
+  const pw_reader_source from = {path, nset, set};
+  const pw_reader_use use = {read_scene, NULL, out};
+  return pw_reader_file(&from, &use, messages);
 }

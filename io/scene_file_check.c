@@ -2,8 +2,23 @@
 #include "engine/scene_check.h"
 #include "io/scene_file_reader.h"
 
+#include <ctype.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
+
+/* The entry that "layers.1: ..." speaks of, or the list itself. */
+static const pw_yaml_node *entry_of(const pw_yaml_node *list, const char *rest)
+{
+  const pw_yaml_node *entry = list->first;
+  if (list->kind != PW_YAML_LIST || rest[0] != '.' || !isdigit((unsigned char)rest[1])) {
+    return list;
+  }
+  for (long k = strtol(rest + 1, NULL, 10); entry && k > 0; k--) {
+    entry = entry->next;
+  }
+  return entry ? entry : list;
+}
 
 /* Report a broken rule at the key its message begins with, else at its section. */
 static bool report(pw_reader *r, pw_status status, const pw_yaml_node *node)
@@ -17,6 +32,7 @@ static bool report(pw_reader *r, pw_status status, const pw_yaml_node *node)
   const char *rule = pw_error_text();
   snprintf(key, sizeof key, "%.*s", (int)strspn(rule, letters), rule);
   const pw_yaml_node *child = node ? pw_yaml_find(node, key) : NULL;
+  child = child ? entry_of(child, rule + strlen(key)) : NULL;
   const pw_yaml_place *place = node ? pw_reader_place(node) : &start;
   pw_yaml_error(r->m, child ? &child->place : place, "%s", rule);
   return false;

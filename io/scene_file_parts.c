@@ -71,6 +71,9 @@ static const pw_material *read_model(pw_reader *r, const pw_yaml_node *entry, co
     pw_yaml_error(r->m, &entry->place, "%s must be a mapping of keys, found %s", title, found);
     return NULL;
   }
+  if (!node && pw_yaml_find(entry, "soil")) {
+    return NULL; /* the soil gave none: reported there */
+  }
   if (!node) {
     pw_yaml_error(r->m, pw_reader_place(entry), "missing key 'model' in %s", title);
     return NULL;
@@ -90,14 +93,14 @@ static const pw_material *read_model(pw_reader *r, const pw_yaml_node *entry, co
 
 static void read_material(pw_reader *r, int i)
 {
-  static const char *const extra[] = {"model"};
+  static const char *const extra[] = {"model", "soil"};
   pw_scene_material *m = &r->scene->material[i];
   const pw_yaml_node *node = r->material[i].node;
   char title[TITLE];
   snprintf(title, sizeof title, "materials.%s", m->name);
   m->model = read_model(r, node, title);
   if (m->model) {
-    pw_reader_section s = {title, m->model->keys, m->param, 1, extra};
+    pw_reader_section s = {title, m->model->keys, m->param, 2, extra};
     pw_scene_defaults(m->model->keys, m->param);
     r->material[i].clean = pw_reader_keys(r, &s, node);
   }
@@ -181,6 +184,34 @@ void pw_reader_bodies(pw_reader *r)
   }
 }
 
+/* The list inside an effect's section. */
+static bool read_rows(pw_reader *r, const pw_effect_rows *rows, const pw_yaml_node *node,
+                      const char *section, unsigned char *param)
+{
+  char title[TITLE + 32];
+  bool clean = true;
+  int count = 0;
+  if (node->kind != PW_YAML_LIST) {
+    char found[PW_YAML_SHOWN + 8];
+    pw_yaml_describe(node, found);
+    pw_yaml_error(r->m, &node->place, "'%s' must be a list of mappings, found %s", rows->name,
+                  found);
+    return false;
+  }
+  for (const pw_yaml_node *entry = node->first; entry; entry = entry->next) {
+    if (!has_room(r, entry, count, rows->max, rows->name)) {
+      return false;
+    }
+    snprintf(title, sizeof title, "%s.%s.%d", section, rows->name, count);
+    unsigned char *row = param + rows->first + (size_t)count++ * rows->size;
+    pw_scene_defaults(rows->keys, row);
+    pw_reader_section s = {title, rows->keys, row, 0, NULL};
+    clean = pw_reader_keys(r, &s, entry) && clean;
+  }
+  memcpy(param + rows->count, &count, sizeof count);
+  return clean;
+}
+
 static bool read_instance(pw_reader *r, const pw_effect *type, const pw_yaml_node *node,
                           const char *title)
 {
@@ -188,10 +219,16 @@ static bool read_instance(pw_reader *r, const pw_effect *type, const pw_yaml_nod
   if (!has_room(r, node, i, PW_MAX_EFFECTS, "entries of effects")) {
     return false;
   }
-  pw_reader_section s = {title, type->keys ? type->keys : no_keys,
-                         pw_scene_add_effect(r->scene, type->name), 0, NULL};
+  const pw_effect_rows *rows = type->rows;
+  const char *extra[] = {rows ? rows->name : NULL};
+  unsigned char *param = pw_scene_add_effect(r->scene, type->name);
+  pw_reader_section s = {title, type->keys ? type->keys : no_keys, param, rows != NULL, extra};
   r->effect[i].node = node;
   r->effect[i].clean = pw_reader_keys(r, &s, node);
+  const pw_yaml_node *list = rows ? pw_yaml_find(node, rows->name) : NULL;
+  if (list) {
+    r->effect[i].clean = read_rows(r, rows, list, title, param) && r->effect[i].clean;
+  }
   return true;
 }
 

@@ -38,6 +38,24 @@ typedef struct pw_reader_section {
   const char *const *extra; /**< [nextra] further keys it may hold, which the caller reads */
 } pw_reader_section;
 
+/** The file that is read, and changes made to it before it is checked. */
+typedef struct pw_reader_source {
+  const char *name;
+  int nset;
+  const char *const *set; /**< [nset] "key.path=value" */
+} pw_reader_source;
+
+/** What is read from a file: @ref read fills reader->scene, which is copied to @ref out when no
+ *  error was found. */
+typedef struct pw_reader_use {
+  void (*read)(pw_reader *r, void *ctx);
+  void *ctx;
+  pw_scene *out;
+} pw_reader_use;
+
+/** @brief Read a file of scene sections; messages and return as pw_scene_read_file(). */
+pw_status pw_reader_file(const pw_reader_source *from, const pw_reader_use *use, char **messages);
+
 /**
  * @brief Read the value of @p key.
  * @return true; false after adding an error.
@@ -53,6 +71,12 @@ bool pw_reader_repeated(pw_reader *r, const pw_yaml_node *child);
 
 /** @brief Place at which a whole section is reported: its key, or the start of a list entry. */
 const pw_yaml_place *pw_reader_place(const pw_yaml_node *node);
+
+/** @brief Put the parameters of named soils into the entries of `materials:` that have a key
+ *  `soil:`; what an entry sets itself stands. A soil NAME is the file NAME.yaml, looked for in the
+ *  folders soils and cases/soils of the file's folder and of those above it, of the working folder
+ *  and beside the program. */
+void pw_reader_soils(pw_reader *r);
 
 /** @brief Read `materials:`; every name is registered even when its entry has errors. */
 void pw_reader_materials(pw_reader *r);

@@ -397,7 +397,7 @@ pw_status pw_snapshots_grid(pw_snapshots *s, const pw_sim *sim)
   const pw_mesh *mesh = pw_sim_mesh(sim);
   pw_vtk_array array[2 * PW_MAX_BODIES];
   float *values = NULL;
-  PW_TRY(pw_path_join(s->folder, "grid.vti", path));
+  PW_TRY(pw_path_join(s->folder, mesh->graded ? "grid.vtr" : "grid.vti", path));
   PW_TRY(pw_mem_alloc("values of the grid", 4 * (pw_off)nodes->nnode * nodes->nfield,
                       sizeof *values, &values));
   for (int f = 0; f < nodes->nfield; f++) {
@@ -413,6 +413,7 @@ pw_status pw_snapshots_grid(pw_snapshots *s, const pw_sim *sim)
       .nodes = {mesh->nodes[0], mesh->nodes[1]},
       .origin = {mesh->origin[0], mesh->origin[1]},
       .cell = mesh->cell,
+      .node = {mesh->axis[0].node, mesh->axis[1].node},
       .narray = 2 * nodes->nfield,
       .array = array,
       .time_s = pw_sim_time(sim),

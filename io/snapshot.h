@@ -5,8 +5,8 @@
  *
  * In one folder: points_NNNN.vtp, one polygon per point (its domain; a vertex where the basis has
  * none) with the fields as cell data; outline_NNNN.vtp, the pile or interface as polylines;
- * grid.vti, mass and velocity of the nodes at the end; run.pvd, the collection with times, to be
- * opened in ParaView. run.pvd is complete after each snapshot.
+ * grid.vti (grid.vtr of a graded grid), mass and velocity of the nodes at the end; run.pvd, the
+ * collection with times, to be opened in ParaView. run.pvd is complete after each snapshot.
  */
 #ifndef PW_IO_SNAPSHOT_H
 #define PW_IO_SNAPSHOT_H
@@ -36,7 +36,8 @@ pw_status pw_snapshots_resume(const char *folder, pw_real time_s, pw_snapshots *
  */
 pw_status pw_snapshots_write(pw_snapshots *s, const pw_sim *sim);
 
-/** @brief Write grid.vti: the nodes as the last step left them. @return as pw_snapshots_write. */
+/** @brief Write grid.vti, of a graded grid grid.vtr: the nodes as the last step left them.
+ *  @return as pw_snapshots_write. */
 pw_status pw_snapshots_grid(pw_snapshots *s, const pw_sim *sim);
 
 /** @brief Free and null; NULL is accepted. */

@@ -17,12 +17,15 @@
 #include <vtkPointData.h>
 #include <vtkPoints.h>
 #include <vtkPolyData.h>
+#include <vtkRectilinearGrid.h>
 #include <vtkSmartPointer.h>
 #include <vtkTypeInt32Array.h>
 #include <vtkXMLImageDataReader.h>
 #include <vtkXMLImageDataWriter.h>
 #include <vtkXMLPolyDataReader.h>
 #include <vtkXMLPolyDataWriter.h>
+#include <vtkXMLRectilinearGridReader.h>
+#include <vtkXMLRectilinearGridWriter.h>
 
 extern "C" {
 #include "io/atomic_file.h"
@@ -168,6 +171,27 @@ vtkSmartPointer<vtkImageData> build_grid(const pw_vtk_grid &in)
   return data;
 }
 
+vtkSmartPointer<vtkDoubleArray> coordinates(const pw_real *value, vtkIdType n)
+{
+  auto array = vtkSmartPointer<vtkDoubleArray>::New();
+  array->SetNumberOfTuples(n);
+  std::copy(value, value + n, array->GetPointer(0));
+  return array;
+}
+
+vtkSmartPointer<vtkRectilinearGrid> build_graded(const pw_vtk_grid &in)
+{
+  const pw_real plane = 0.0;
+  auto data = vtkSmartPointer<vtkRectilinearGrid>::New();
+  data->SetDimensions(in.nodes[0], in.nodes[1], 1);
+  data->SetXCoordinates(coordinates(in.node[0], in.nodes[0]));
+  data->SetYCoordinates(coordinates(in.node[1], in.nodes[1]));
+  data->SetZCoordinates(coordinates(&plane, 1));
+  add_arrays(data->GetPointData(), in.array, in.narray, vtkIdType(in.nodes[0]) * in.nodes[1]);
+  add_time(data, in.time_s);
+  return data;
+}
+
 template <typename Reader> vtkSmartPointer<vtkDataSet> read_object(const char *path)
 {
   vtkNew<Reader> reader;
@@ -194,6 +218,9 @@ pw_status read_array(const char *path, const char *name, float *value, pw_off ma
   const bool cells = data != nullptr;
   if (!cells) {
     data = read_object<vtkXMLImageDataReader>(path);
+  }
+  if (!data) {
+    data = read_object<vtkXMLRectilinearGridReader>(path);
   }
   if (!data) {
     return fail(PW_ERR_FILE, path, "VTK cannot read it");
@@ -234,8 +261,11 @@ extern "C" pw_status pw_vtk_write_cells(const char *path, const pw_vtk_cells *ce
 
 extern "C" pw_status pw_vtk_write_grid(const char *path, const pw_vtk_grid *grid)
 {
-  return guarded(path,
-                 [=] { return write_object<vtkXMLImageDataWriter>(path, build_grid(*grid)); });
+  return guarded(path, [=] {
+    return grid->node[0] && grid->node[1]
+               ? write_object<vtkXMLRectilinearGridWriter>(path, build_graded(*grid))
+               : write_object<vtkXMLImageDataWriter>(path, build_grid(*grid));
+  });
 }
 
 extern "C" pw_status pw_vtk_read_array(const char *path, const char *name, float *value, pw_off max,

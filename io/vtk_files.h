@@ -43,6 +43,7 @@ typedef struct pw_vtk_cells {
 typedef struct pw_vtk_grid {
   pw_idx nodes[2];
   pw_real origin[2], cell; /**< m */
+  const pw_real *node[2];  /**< [nodes] coordinates along an axis of a graded grid; NULL: uniform */
   int narray;
   const pw_vtk_array *array; /**< [narray] node data */
   pw_real time_s;
@@ -51,7 +52,7 @@ typedef struct pw_vtk_grid {
 /** What is in a file: see pw_vtk_read_array. */
 typedef struct pw_vtk_shape {
   pw_off points, cells; /**< of the whole file */
-  int narray;           /**< arrays of cell data (.vtp) or node data (.vti) */
+  int narray;           /**< arrays of cell data (.vtp) or node data (.vti, .vtr) */
   int ncomp;            /**< components of the array asked for */
   pw_off count;         /**< values of it: tuples times ncomp */
   pw_real time_s;
@@ -67,11 +68,11 @@ bool pw_vtk_available(void);
  */
 pw_status pw_vtk_write_cells(const char *path, const pw_vtk_cells *cells);
 
-/** @brief Write a .vti file. @return as pw_vtk_write_cells. */
+/** @brief Write a .vti file, of a graded grid a .vtr file. @return as pw_vtk_write_cells. */
 pw_status pw_vtk_write_grid(const char *path, const pw_vtk_grid *grid);
 
 /**
- * @brief Read one array of a .vtp or .vti file back with VTK's own reader.
+ * @brief Read one array of a .vtp, .vti or .vtr file back with VTK's own reader.
  * @param[in]  name  of the array; NULL: the coordinates of the points, three components (.vtp)
  * @param[out] value [max] the first @p max values
  * @return PW_OK; PW_ERR_FILE when the file cannot be read or has no such array;

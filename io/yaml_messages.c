@@ -40,8 +40,13 @@ void pw_yaml_messages_free(pw_yaml_messages *m)
   for (int i = 0; i < m->kept; i++) {
     free(m->item[i].what);
   }
+  for (int i = 0; i < m->nfile; i++) {
+    free(m->file[i].name);
+    free(m->file[i].text);
+  }
   free(m->item);
   m->item = NULL;
+  m->nfile = 0;
   m->n = m->kept = 0;
 }
 
@@ -63,7 +68,7 @@ void pw_yaml_shown(const char *text, char *out)
   out[n] = '\0';
 }
 
-/* File before --set, then by place; equal places keep their order (insertion sort). */
+/* Included files before the file before --set, then by place; equal places keep their order (insertion sort). */
 static bool later(const pw_yaml_place *a, const pw_yaml_place *b)
 {
   if (a->set != b->set) {
@@ -121,9 +126,9 @@ pw_yaml_place pw_yaml_place_at(const pw_yaml_messages *m, size_t offset)
 }
 
 /* Start of line @p line (from 1), its bytes in @p length; NULL past the end. */
-static const char *source_line(const pw_yaml_messages *m, int line, size_t *length)
+static const char *source_line(const char *text, size_t bytes, int line, size_t *length)
 {
-  const char *start = m->text, *end = m->text + m->length;
+  const char *start = text, *end = text + bytes;
   const char *c = start;
   for (int at = 1; c < end; at += 1) {
     size_t skip = 0;
@@ -171,9 +176,11 @@ static void print_message(FILE *out, const pw_yaml_messages *m, const pw_yaml_me
     fprintf(out, "--set %s: error: %s\n", shown, item->what);
     return;
   }
-  fprintf(out, "%s:%d:%d: error: %s\n", m->name, place->line, place->column, item->what);
-  size_t length = 0;
-  const char *line = source_line(m, place->line, &length);
+  const pw_yaml_file *file = place->set < -1 ? &m->file[-2 - place->set] : NULL;
+  const char *name = file ? file->name : m->name, *text = file ? file->text : m->text;
+  size_t bytes = file ? file->length : m->length, length = 0;
+  const char *line = source_line(text, bytes, place->line, &length);
+  fprintf(out, "%s:%d:%d: error: %s\n", name, place->line, place->column, item->what);
   if (line && length > 0) {
     print_line(out, line, length, place->column);
   }

@@ -9,11 +9,20 @@
 #include <stdbool.h>
 #include <stddef.h>
 
-/** Where something was written: in the file, or in one of the `--set` entries. */
+/** Where something was written: in the file, in one of the `--set` entries, or in a file that the
+ *  file includes. */
 typedef struct pw_yaml_place {
-  int set;          /**< index of the `--set` entry, or -1 for the file */
-  int line, column; /**< from 1, counted in characters; of the file only */
+  int set;          /**< index of the `--set` entry, -1 for the file, -2 - i for included file i */
+  int line, column; /**< from 1, counted in characters; of files only */
 } pw_yaml_place;
+
+/** A file included by another. */
+typedef struct pw_yaml_file {
+  char *name, *text; /**< owned */
+  size_t length;
+} pw_yaml_file;
+
+enum { PW_YAML_FILES = 16 };
 
 typedef struct pw_yaml_message {
   pw_yaml_place place;
@@ -25,7 +34,9 @@ typedef struct pw_yaml_messages {
   const char *text; /**< [length] the source; borrowed */
   size_t length;
   const char *const *set; /**< the `--set` entries; borrowed */
-  int n;                  /**< errors found; those past a limit are counted, not kept */
+  int nfile;
+  pw_yaml_file file[PW_YAML_FILES]; /**< included files */
+  int n;                            /**< errors found; those past a limit are counted, not kept */
   int kept;
   bool out_of_memory;
   pw_yaml_message *item;

@@ -252,7 +252,7 @@ static void syntax_error(builder *b, const yaml_parser_t *p)
   pw_yaml_place place = place_of(b, &p->problem_mark);
   const char *problem = p->problem ? p->problem : "not valid";
   if (p->error == YAML_READER_ERROR) {
-    if (b->set < 0) {
+    if (b->set == -1) {
       place = pw_yaml_place_at(b->m, p->problem_offset);
     }
     pw_yaml_error(b->m, &place, "not a text file in UTF-8: %s", problem);

@@ -30,7 +30,8 @@ struct pw_yaml_node {
 
 /**
  * @brief Parse a document.
- * @param[in]     set  index of the `--set` entry the text belongs to, or -1 for the file
+ * @param[in]     set  index of the `--set` entry the text belongs to, -1 for the file, or -2 - i
+ *                     for included file i
  * @param[in,out] m    receives the error, one at most
  * @return the root, to be freed with pw_yaml_free; NULL after an error (m->n grew) or when memory
  *         ran out (m->out_of_memory). An empty document gives an empty plain scalar.

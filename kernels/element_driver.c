@@ -58,10 +58,10 @@ static void exponential(const pw_real *a, pw_real *out)
   }
 }
 
-/** Deformation gradient after the increment. */
-static void deform(const pw_real *f, const pw_real *de, const pw_real *spin, pw_real *out)
+/** Deformation gradient after the increment, and that of the increment alone. */
+static void deform(const pw_real *f, const pw_real *de, const pw_real *spin, pw_real *step,
+                   pw_real *out)
 {
-  pw_real step[9];
   const pw_real a[9] = {de[0],           de[3] + spin[0], de[5] - spin[2],
                         de[3] - spin[0], de[1],           de[4] + spin[1],
                         de[5] + spin[2], de[4] - spin[1], de[2]};
@@ -73,9 +73,9 @@ pw_status pw_element_move(pw_element *el, const pw_real *de, const pw_real *spin
 {
   const pw_real none[3] = {0};
   pw_element next = *el;
-  pw_real dvol = exp(de[0] + de[1] + de[2]), b[6];
+  pw_real dvol = exp(de[0] + de[1] + de[2]), b[6], step[9];
   const pw_real *turn = spin ? spin : none, *f = next.f;
-  deform(el->f, de, turn, next.f);
+  deform(el->f, de, turn, step, next.f);
   pw_real jac = f[0] * (f[4] * f[8] - f[5] * f[7]) - f[1] * (f[3] * f[8] - f[5] * f[6]) +
                 f[2] * (f[3] * f[7] - f[4] * f[6]);
   if (!(jac > 0.0) || !isfinite(jac)) {
@@ -97,6 +97,7 @@ pw_status pw_element_move(pw_element *el, const pw_real *de, const pw_real *spin
                          .left_cg = b,
                          .jac = &jac,
                          .density = &next.density,
+                         .increment = step,
                          .stress = next.stress,
                          .state = next.state,
                          .wave_speed = &next.wave_speed,
@@ -114,14 +115,16 @@ pw_status pw_element_move(pw_element *el, const pw_real *de, const pw_real *spin
 }
 
 /** Solve a x = b in place by elimination with row exchanges; false when singular. */
-static bool solve(int n, pw_real a[6][6], pw_real *b)
+static bool eliminate(int n, pw_real a[6][6], pw_real *b)
 {
+  pw_real first = 0.0;
   for (int k = 0; k < n; k++) {
     int best = k;
     for (int i = k + 1; i < n; i++) {
       best = fabs(a[i][k]) > fabs(a[best][k]) ? i : best;
     }
-    if (!(fabs(a[best][k]) > 0.0)) {
+    first = pw_max(first, fabs(a[best][k]));
+    if (!(fabs(a[best][k]) > 1e-11 * first)) {
       return false;
     }
     for (int j = 0; j < n; j++) {
@@ -147,6 +150,70 @@ static bool solve(int n, pw_real a[6][6], pw_real *b)
     b[k] /= a[k][k];
   }
   return true;
+}
+
+/**
+ * Rows of @p a made orthogonal by Jacobi rotations that act on @p b as well; then the shortest x
+ * with a x = b is the sum of the rows, each times b over its square. Rows that vanish are left out.
+ */
+static void shortest(int n, pw_real a[6][6], pw_real *b)
+{
+  pw_real x[6] = {0}, size = 0.0;
+  for (int sweep = 0; sweep < 30; sweep++) {
+    for (int p = 0; p < n; p++) {
+      for (int q = p + 1; q < n; q++) {
+        pw_real pp = 0.0, qq = 0.0, pq = 0.0;
+        for (int j = 0; j < n; j++) {
+          pp += a[p][j] * a[p][j];
+          qq += a[q][j] * a[q][j];
+          pq += a[p][j] * a[q][j];
+        }
+        if (!(fabs(pq) > 1e-15 * sqrt(pp * qq))) {
+          continue;
+        }
+        pw_real zeta = (qq - pp) / (2.0 * pq);
+        pw_real t = copysign(1.0, zeta) / (fabs(zeta) + sqrt(1.0 + zeta * zeta));
+        pw_real c = 1.0 / sqrt(1.0 + t * t), s = t * c, bp = b[p];
+        for (int j = 0; j < n; j++) {
+          pw_real ap = a[p][j];
+          a[p][j] = c * ap - s * a[q][j];
+          a[q][j] = s * ap + c * a[q][j];
+        }
+        b[p] = c * bp - s * b[q];
+        b[q] = s * bp + c * b[q];
+      }
+    }
+  }
+  pw_real square[6] = {0};
+  for (int p = 0; p < n; p++) {
+    for (int j = 0; j < n; j++) {
+      square[p] += a[p][j] * a[p][j];
+    }
+    size = pw_max(size, square[p]);
+  }
+  for (int p = 0; p < n; p++) {
+    for (int j = 0; square[p] > 1e-20 * size && j < n; j++) {
+      x[j] += a[p][j] * b[p] / square[p];
+    }
+  }
+  memcpy(b, x, (size_t)n * sizeof *b);
+}
+
+/** Solve a x = b in place. Where a is singular, as on the edges of a yield surface, the shortest
+ *  of the best solutions is taken: it keeps the symmetry of the loading. */
+static bool solve(int n, pw_real a[6][6], pw_real *b)
+{
+  pw_real copy[6][6], rhs[6], sum = 0.0;
+  memcpy(copy, a, sizeof copy);
+  memcpy(rhs, b, (size_t)n * sizeof *rhs);
+  if (!eliminate(n, a, b)) {
+    memcpy(b, rhs, (size_t)n * sizeof *b);
+    shortest(n, copy, b);
+  }
+  for (int k = 0; k < n; k++) {
+    sum += fabs(b[k]);
+  }
+  return isfinite(sum);
 }
 
 /** Components whose strain is open, their count. */

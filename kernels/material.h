@@ -43,11 +43,15 @@ typedef struct pw_stress_args {
                                material sets needs_left_cg */
   const pw_real *jac;         /**< [ldi] J = det F at the end of the step, or NULL likewise */
   const pw_real *density;     /**< [ldi] at the end of the step; kg/m3 */
+  const pw_real *increment;   /**< [9][ldi] F(n+1) F(n)^-1 of the step, row-major, or NULL: it is
+                               1 + dstrain + spin; - */
   pw_real *stress;            /**< [6][ld] Cauchy stress, in and out; Pa */
   pw_real *state;             /**< [nstate][ld] state variables, in and out; may be NULL if none */
   pw_real *wave_speed;        /**< [ldi] out: upper bound of the wave speed; m/s */
   pw_real *tangent;           /**< [36][ldi] out, row-major d stress / d strain with ENGINEERING
-                               shear columns, or NULL when not asked for; Pa */
+                               shear columns, or NULL when not asked for; Pa. Models in rate form:
+                               by the increment dstrain; models of F: by a further strain e of
+                               F(n+1) <- (1 + e) F(n+1) in the same step */
   pw_material_counts *counts; /**< added to, or NULL */
   pw_idx bad;                 /**< out: first failing point of the batch, or -1 */
 } pw_stress_args;
@@ -74,7 +78,11 @@ typedef struct pw_material {
   int (*nstate)(const pw_real *param);
   /** @brief Density of a stress-free point; kg/m3. */
   pw_real (*density)(const pw_real *param);
-  /** @brief Set the state of @p n points for the stress they have now; arrays as in the update. */
+  /** @brief Tell @p n points their height once, before any init(); NULL when the model does not
+   *  depend on it. @param[in] y [n] vertical coordinate at the start; m */
+  void (*place)(const pw_real *param, pw_idx n, pw_idx ld, const pw_real *y, pw_real *state);
+  /** @brief Set the state of @p n points for the stress they have now; arrays as in the update.
+   *  May be called again after the stress has been changed: it keeps what place() has set. */
   void (*init)(const pw_real *param, pw_idx n, pw_idx ld, const pw_real *stress, pw_real *state);
   /** @brief Advance stress and state over one step.
    *  @return PW_OK; PW_RETRY_STRESS with args->bad set (no error record: the caller writes it). */

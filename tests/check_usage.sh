@@ -7,7 +7,7 @@ scene=$scenes/small_elastic.yaml
 expect_exit 0 "$program" --help
 expect_text stdout 'run SCENE.yaml'
 expect_text stdout 'Exit status'
-for command in run check keys list; do
+for command in run check element keys list; do
   expect_exit 0 "$program" $command --help
   expect_text stdout "usage: pilewright $command"
   expect_exit 0 "$program" help $command

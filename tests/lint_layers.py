@@ -24,6 +24,9 @@ MAY_INCLUDE = {
 # system header: the only folders that may use it (programs and tests may use what they like)
 HEADER_HOME = {
     "metis.h": {"partition"},
+    "cholmod.h": {"engine"},
+    "umfpack.h": {"engine"},
+    "gmshc.h": {"io"},
     "hdf5.h": {"io"},
     "jansson.h": {"io"},
     "yaml.h": {"io"},

@@ -25,7 +25,7 @@ static pw_scene soil_scene(void)
 static void refine(pw_scene *s, double x0, double x1, double y0, double y1, double size)
 {
   pw_scene_body *b = &s->body[0];
-  b->refine[b->nrefine++] = (pw_scene_refine){{x0, x1}, {y0, y1}, size};
+  b->refine[b->nrefine++] = (pw_scene_refine){{x0, x1}, {y0, y1}, size, 0};
 }
 
 static pw_idx count(const pw_scene *s)

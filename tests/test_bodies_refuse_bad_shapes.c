@@ -113,7 +113,7 @@ static void bad_refinement_is_refused(void **state)
   (void)state;
   pw_scene s = good(PW_PLANE, PW_SHAPE_RECTANGLE);
   s.body[0].nrefine = 1;
-  s.body[0].refine[0] = (pw_scene_refine){{1, 2}, {1, 2}, 0.3};
+  s.body[0].refine[0] = (pw_scene_refine){{1, 2}, {1, 2}, 0.3, 0};
   refused(&s, "refine box 0 asks for points of 0.3 m");
   s.body[0].refine[0].point_size_m = 0;
   refused(&s, "refine box 0 asks for points of 0 m");

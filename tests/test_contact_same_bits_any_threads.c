@@ -8,7 +8,7 @@ static bool same_points(const pw_sim *a, const pw_sim *b)
   for (int id = 0; id < PW_FIELD_COUNT; id++) {
     pw_field_info fa = pw_points_field(&a->points, id), fb = pw_points_field(&b->points, id);
     size_t each = fa.is_real ? sizeof(pw_real) : sizeof(pw_idx);
-    if (!fa.restart || !fa.array) {
+    if (!fa.restart || !fa.array || !fb.array) {
       continue;
     }
     for (int c = 0; c < fa.ncomp; c++) {

@@ -57,6 +57,14 @@ static void expect_pixel(pixel p, int red, int green, int blue)
   assert_int_equal(p.blue, blue);
 }
 
+/* The end of a palette, which gnuplot meets to a few parts of 255. */
+static void expect_colour(pixel p, int red, int green, int blue)
+{
+  assert_in_range(p.red, red - 3, red + 3);
+  assert_in_range(p.green + 3, green, green + 6);
+  assert_in_range(p.blue, blue - 3, blue + 3);
+}
+
 static void sand_is_coloured_and_the_pile_grey(void **unused)
 {
   (void)unused;
@@ -148,6 +156,39 @@ static void write_history(const char *file)
   assert_ok(pw_history_close(&h));
 }
 
+/* A block at 1 m/s, later at 3 m/s: drawn at once with the range so far, at the end both pictures
+ * have the range from 1 to 3 m/s, the ends of the colours. */
+static void one_colour_range_for_all_pictures_of_a_run(void **unused)
+{
+  (void)unused;
+  static pw_scene scene;
+  const char *folder = test_folder(), *early = "speed_t00.000s.png", *late = "speed_t01.000s.png";
+  test_flying_block(&scene, PW_CPDI);
+  pw_sim *sim = test_sim(&scene, 1);
+  for (int k = 0; k < 2; k++) {
+    for (pw_idx i = 0; i < sim->points.n; i++) {
+      sim->points.v[i] = 1.0 + 2.0 * k;
+      sim->points.v[sim->points.ld + i] = 0.0;
+    }
+    sim->time = k;
+    assert_ok(pw_pictures_fields(folder, sim));
+    assert_true(test_exists(
+        test_path(folder, k == 0 ? "speed_t00.000s.png.field" : "speed_t01.000s.png.field")));
+  }
+  pixel before = pixel_at(folder, early, 420, 251), last = pixel_at(folder, late, 420, 251);
+  assert_true(before.green > 100); /* alone: the middle of its range */
+  expect_colour(last, 0xfd, 0xe7, 0x25);
+  assert_ok(pw_pictures_finish(folder));
+  expect_colour(pixel_at(folder, early, 420, 251), 0x44, 0x01, 0x54);
+  expect_colour(pixel_at(folder, late, 420, 251), 0xfd, 0xe7, 0x25);
+  assert_false(test_exists(test_path(folder, "speed_t00.000s.png.field")));
+  assert_false(test_exists(test_path(folder, "speed_t01.000s.png.field")));
+  assert_ok(pw_pictures_finish(folder)); /* nothing left to do */
+  assert_ok(pw_pictures_finish("/nowhere"));
+  pw_sim_destroy(&sim);
+  test_remove_folder(folder);
+}
+
 static void curves_of_the_columns_there_are(void **unused)
 {
   (void)unused;
@@ -235,6 +276,7 @@ int main(void)
       cmocka_unit_test(sand_is_coloured_and_the_pile_grey),
       cmocka_unit_test(a_window_cuts_the_picture),
       cmocka_unit_test(elastic_scenes_show_other_fields),
+      cmocka_unit_test(one_colour_range_for_all_pictures_of_a_run),
       cmocka_unit_test(curves_of_the_columns_there_are),
       cmocka_unit_test(without_gnuplot_the_package_is_named),
       cmocka_unit_test(no_room_keeps_the_old_picture),

@@ -13,6 +13,9 @@
  * metres or radians, as its meaning says). */
 static const char *const dimensionless[] = {
     "cfl",
+    "growth",
+    "points_per_cell",
+    "rod_elements",
     "mass_cut_off",
     "block_elements",
     "poisson_ratio",
@@ -30,10 +33,25 @@ static const char *const dimensionless[] = {
     "exponent_chi",
     "substep_tolerance",
     "max_substeps",
+    "rigidity_index",
+    "compression_index_lambda",
+    "swelling_index_kappa",
+    "critical_stress_ratio",
+    "overconsolidation_ratio",
+    "compression_index_lambda_star",
+    "swelling_index_kappa_star",
+    "virgin_line_n",
+    "stiffness_ratio_r",
     "k0",
+    "porosity",
+    "normal_factor",
+    "shear_factor",
+    "shear_ratio",
     "count",
     "amplitude",
     "friction",
+    "stiffness_factor",
+    "domain_aspect_max",
     "split_factor",
     "thin_factor",
     "coefficient",
@@ -55,6 +73,11 @@ static void for_each_table(table_fn fn, void *context)
   }
   for (int i = 0; pw_effect_at(i); i++) {
     fn(pw_effect_at(i)->name, pw_effect_at(i)->keys, context);
+    if (pw_effect_at(i)->rows) {
+      char name[2 * PW_NAME];
+      snprintf(name, sizeof name, "%s: %s:", pw_effect_at(i)->name, pw_effect_at(i)->rows->name);
+      fn(name, pw_effect_at(i)->rows->keys, context);
+    }
   }
 }
 
@@ -196,7 +219,10 @@ static char *print(void (*fn)(FILE *))
 /* The row of a key stands under its table's title, with unit, default and meaning. */
 static void find_rows(const char *name, const pw_key *keys, void *context)
 {
-  const char *title = strstr(context, name);
+  char line[2 * PW_NAME + 2];
+  snprintf(line, sizeof line, "\n%s", name); /* a title stands at the start of a line, */
+  const char *title = strstr(context, line);
+  title = title ? title : strstr(context, name); /* that of a material at its end */
   if (!title) {
     fail_msg("%s is not listed", name);
   }

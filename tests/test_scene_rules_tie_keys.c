@@ -162,9 +162,9 @@ static void sizes_of_points_are_sound(void **state)
   expect_rule("bodies.left: point_size_m: domains of 1e-05 m may give 1e+10 points");
   b->point_size_m = 0.1;
   b->nrefine = 1;
-  b->refine[0] = (pw_scene_refine){{0, 1}, {0, 1}, 0.2};
+  b->refine[0] = (pw_scene_refine){{0, 1}, {0, 1}, 0.2, 0};
   expect_rule("bodies.left: refine: point_size_m = 0.2 m of entry 0 is larger");
-  b->refine[0] = (pw_scene_refine){{1, 0}, {0, 1}, 0.1};
+  b->refine[0] = (pw_scene_refine){{1, 0}, {0, 1}, 0.1, 0};
   expect_rule("bodies.left: refine: x_m and y_m of entry 0 must be written [smaller, larger]");
 }
 

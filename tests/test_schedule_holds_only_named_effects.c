@@ -78,14 +78,16 @@ static void biaxial_test(void **state)
   i->kind = PW_STRESS_UNIFORM;
   i->stress_xx_pa = i->stress_yy_pa = i->stress_zz_pa = -1e5;
   pw_sim *sim = test_sim(&s, 1);
-  assert_hooks(sim, "node_force: surcharge\n"
+  assert_hooks(sim, "p2g: initial_stress\n"
+                    "node_force: surcharge\n"
                     "constraint: boundary\nconstraint: boundary\nconstraint: boundary\n"
                     "remap: boundary\nremap: boundary\nremap: boundary\n"
-                    "end: surcharge\n");
+                    "end: initial_stress\nend: surcharge\n");
   assert_fields(sim, "id body home x v mass vol def_grad stress state half0 half corner local");
   assert_int_equal(sim->points.nstate, 1); /* the void ratio: intergranular strain is off */
   assert_int_equal(sim->nodes.nfield, 1);
-  assert_int_equal(contexts(sim), 4);
+  assert_int_equal(contexts(sim), 5);
+  assert_null(sim->buoyant); /* no ground water */
   pw_sim_destroy(&sim);
 }
 
@@ -95,13 +97,13 @@ static void hammered_pile(void **state)
   static pw_scene s;
   test_hammered_pile(&s, TEST_PENALTY, 0.125);
   pw_sim *sim = test_sim(&s, 1);
-  assert_hooks(sim, "p2g: contact_penalty\n"
+  assert_hooks(sim, "p2g: initial_stress\np2g: contact_penalty\n"
                     "node_force: gravity\nnode_force: hammer\nnode_force: contact_penalty\n"
                     "constraint: boundary\nconstraint: boundary\n"
                     "remap_p2g: contact_penalty\n"
                     "remap: boundary\nremap: boundary\n"
                     "mesh: contact_penalty\n"
-                    "end: gravity\nend: hammer\nend: pile_record\n");
+                    "end: initial_stress\nend: gravity\nend: hammer\nend: pile_record\n");
   assert_fields(sim, "id body home x v mass vol def_grad stress state half0 half corner local");
   assert_int_equal(sim->points.nstate, 8); /* void ratio, intergranular strain, substep */
   assert_int_equal(sim->nodes.nfield, 2);
