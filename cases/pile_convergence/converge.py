@@ -1,0 +1,209 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Resistance, set and penetration of the thesis' pile against resolution and against time spent.
+
+usage: converge.py push|hammer [--out DIR] [--program FILE] [--threads N]
+                   [--resolutions 1.2,2.4,4.8] [--contacts corner,penalty,frictional]
+                   [--end S] [--set KEY=VALUE]...
+
+Runs a scene with each contact at each resolution (radius of the pile over edge of a cell), one
+after the other, and writes into DIR: table.csv, table.txt, and the plots resistance.png (or
+penetration.png), convergence.png and time.png (gnuplot). A run that already ended with the same
+settings is not repeated. Python's standard library only.
+"""
+import argparse
+import csv
+import json
+import math
+import pathlib
+import subprocess
+import sys
+
+CASES = pathlib.Path(__file__).resolve().parents[1]
+SCENES = {"push": {"corner": "pushed_pile/corner.yaml",
+                   "penalty": "pushed_pile/graded_penalty.yaml",
+                   "frictional": "pushed_pile/graded_frictional.yaml"},
+          "hammer": {"corner": "hammered_pile/corner.yaml",
+                     "penalty": "hammered_pile/graded_penalty.yaml",
+                     "frictional": "hammered_pile/graded_frictional.yaml"}}
+RADIUS = 0.15                       # m, of the pile in both cases
+DEPTHS = (0.4, 0.8, 1.2, 1.6)       # m, at which the push is compared
+BAND = 0.05                         # m, half of the way over which resistance is averaged
+BLOWS = 4                           # first blows whose sets are listed
+
+
+def arguments():
+    p = argparse.ArgumentParser(description=__doc__,
+                                formatter_class=argparse.RawDescriptionHelpFormatter)
+    p.add_argument("study", choices=("push", "hammer"))
+    p.add_argument("--out", type=pathlib.Path)
+    p.add_argument("--program", default=str(CASES.parent / "build" / "pilewright"))
+    p.add_argument("--threads", type=int, default=2)
+    p.add_argument("--resolutions", default="1.2,2.4,4.8")
+    p.add_argument("--contacts", default="corner,penalty,frictional")
+    p.add_argument("--end", type=float, help="end_s of every run; default: the scene's own")
+    p.add_argument("--set", action="append", default=[], dest="settings")
+    a = p.parse_args()
+    a.out = a.out or pathlib.Path("out") / f"pile_convergence_{a.study}"
+    a.resolutions = [float(r) for r in a.resolutions.split(",")]
+    a.contacts = a.contacts.split(",")
+    return a
+
+
+def settings(study, contact, cell, args):
+    """What a scene of the case is changed to for one cell size."""
+    sets = [f"grid.cell_m={cell:.9g}"]
+    if contact == "penalty":
+        sets.append(f"contact_penalty.segment_m={0.4 * cell:.9g}")
+    if contact != "corner":
+        sets.append(f"bodies.pile.point_size_m={0.4 * cell:.9g}")
+    if args.end:
+        sets.append(f"time.end_s={args.end:.9g}")
+    return sets + args.settings
+
+
+def run(args, contact, resolution):
+    """Run one scene unless it has been run; its folder."""
+    folder = args.out / f"{contact}_{resolution:g}"
+    scene = CASES / SCENES[args.study][contact]
+    sets = settings(args.study, contact, RADIUS / resolution, args)
+    command = [args.program, "run", str(scene), "--out", str(folder), "--threads",
+               str(args.threads), "--quiet", "--force"]
+    for s in sets:
+        command += ["--set", s]
+    note = args.out / f"{contact}_{resolution:g}.command"
+    text = "\n".join([scene.read_text()] + sets)
+    if note.exists() and note.read_text() == text and finished(folder):
+        return folder
+    print("run:", contact, f"radius/cell {resolution:g}", " ".join(sets), flush=True)
+    note.unlink(missing_ok=True)
+    status = subprocess.run(command).returncode
+    if status == 0:
+        note.write_text(text)
+    else:
+        print(f"     ended with status {status}: listed with what it reached", flush=True)
+    return folder
+
+
+def finished(folder):
+    try:
+        return json.loads((folder / "summary.json").read_text())["status"] == "finished"
+    except (OSError, ValueError, KeyError):
+        return False
+
+
+def history(folder):
+    with open(folder / "history.csv", newline="") as f:
+        return list(csv.DictReader(f))
+
+
+def curve(folder):
+    """Depth (m) and resistance over base area (kPa) of every row."""
+    area = math.pi * RADIUS**2
+    return [(float(r["penetration_m"]), 1e-3 * float(r["contact_force_y_n"]) / area)
+            for r in history(folder)]
+
+
+def resistance(rows, depth):
+    near = [q for x, q in rows if abs(x - depth) <= BAND]
+    return sum(near) / len(near) if near and rows[-1][0] >= depth + 0.9 * BAND else math.nan
+
+
+def measure(args, contact, resolution, folder):
+    """One line of the table."""
+    s = json.loads((folder / "summary.json").read_text())
+    r, e = s["results"], s["energy"]
+    row = {"contact": contact, "radius_over_cell": resolution, "status": s["status"],
+           "points": s["points"], "steps": s["steps"], "wall_s": s["wall_s"],
+           "sim_time_s": s["sim_time_s"],
+           "overlap_over_radius": r.get("largest_overlap_m", math.nan) / RADIUS,
+           "energy_error_over_work": abs(e["balance_error_j"]) / max(abs(e["external_work_j"]), 1)}
+    if args.study == "push":
+        rows = curve(folder)
+        for d in DEPTHS:
+            row[f"resistance_{d:g}_m_kpa"] = resistance(rows, d)
+    else:
+        row["penetration_after_gravity_m"] = r.get("penetration_after_gravity_m", math.nan)
+        sets = r.get("set_per_blow_m") or []
+        for k in range(BLOWS):
+            row[f"set_{k + 1}_m"] = sets[k] if k < len(sets) else math.nan
+        row["penetration_m"] = r.get("penetration_m", math.nan)
+    return row
+
+
+def write_tables(out, rows):
+    with open(out / "table.csv", "w", newline="") as f:
+        w = csv.DictWriter(f, rows[0].keys())
+        w.writeheader()
+        w.writerows(rows)
+    width = [max(len(k), 10) for k in rows[0]]
+    lines = ["  ".join(k.rjust(n) for k, n in zip(rows[0], width))]
+    for row in rows:
+        cells = [f"{v:.4g}" if isinstance(v, float) else str(v) for v in row.values()]
+        lines.append("  ".join(c.rjust(n) for c, n in zip(cells, width)))
+    (out / "table.txt").write_text("\n".join(lines) + "\n")
+    print("\n".join(lines))
+
+
+def gnuplot(out, name, title, xlabel, ylabel, lines, extra=""):
+    """lines: (title, [(x, y), ...])"""
+    script = [f'set terminal pngcairo size 900,640 font ",11"', f"set output '{out / name}'",
+              f'set title "{title}"', f'set xlabel "{xlabel}"', f'set ylabel "{ylabel}"',
+              "set grid", "set key outside right", extra]
+    lines = [(t, [p for p in pts if not any(math.isnan(v) for v in p)]) for t, pts in lines]
+    lines = [(t, pts) for t, pts in lines if pts]
+    if not lines:
+        return
+    script.append("plot " + ", ".join(
+        f"'-' with linespoints pointsize {0.9 if len(p) < 20 else 0} title \"{t}\""
+        for t, p in lines))
+    for _, pts in lines:
+        script += [f"{x:.9g} {y:.9g}" for x, y in pts] + ["e"]
+    try:
+        subprocess.run(["gnuplot"], input="\n".join(script), text=True, check=True)
+    except (OSError, subprocess.CalledProcessError) as problem:
+        print(f"no plot {name}: {problem}", file=sys.stderr)
+
+
+def compared(args):
+    """Columns whose convergence is plotted."""
+    if args.study == "push":
+        return [f"resistance_{d:g}_m_kpa" for d in DEPTHS]
+    return ["penetration_after_gravity_m", "set_1_m", "penetration_m"]
+
+
+def plots(args, rows, folders):
+    unit = "resistance / base area, kPa" if args.study == "push" else "m"
+    series = [(c, key) for c in args.contacts for key in compared(args)]
+    for name, x, label in (("convergence.png", "radius_over_cell", "pile radius / cell"),
+                           ("time.png", "wall_s", f"wall time on {args.threads} threads, s")):
+        gnuplot(args.out, name, f"pile {args.study}: {unit}", label, unit,
+                [(f"{c}, {key}".replace("_", " "),
+                  [(r[x], r[key]) for r in rows if r["contact"] == c]) for c, key in series],
+                "set logscale x 2" if name == "convergence.png" else "set logscale x")
+    if args.study == "push":
+        gnuplot(args.out, "resistance.png", "pile pushed at 1 m/s",
+                "resistance / base area, kPa", "depth of the tip, m",
+                [(f"{c} {n:g}", [(q, d) for d, q in curve(f)]) for (c, n), f in folders.items()],
+                "set yrange [*:*] reverse")
+    else:
+        gnuplot(args.out, "penetration.png", "hammered pile", "time, s", "penetration, m",
+                [(f"{c} {n:g}", [(float(r["time_s"]), float(r["penetration_m"]))
+                                 for r in history(f)]) for (c, n), f in folders.items()],
+                "set yrange [*:*] reverse")
+
+
+def main():
+    args = arguments()
+    args.out.mkdir(parents=True, exist_ok=True)
+    rows, folders = [], {}
+    for n in args.resolutions:
+        for c in args.contacts:
+            folders[c, n] = run(args, c, n)
+            rows.append(measure(args, c, n, folders[c, n]))
+            write_tables(args.out, rows)
+    plots(args, rows, folders)
+    print(f"in {args.out}: table.csv, table.txt and plots")
+
+
+main()
