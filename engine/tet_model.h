@@ -1,0 +1,91 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/**
+ * @file engine/tet_model.h
+ * @brief Mesh, points, equations, residual and tangent of an implicit simulation (layer 3).
+ *
+ * Updated Lagrangian: the unknown is the displacement u of the nodes over one step, and every step
+ * starts from nodes where the mesh is. Formulation: kernels/tet_element.h. With F-bar the increment
+ * F of an element is scaled to (theta)^(1/3) F, where
+ *
+ *   increment: theta = v_patch / (V_patch det F), volumes of the points now and at the start of the
+ *              step (Wang et al., equation 1, with F the increment);
+ *   total:     theta = J_patch / (J_bar det F), J_patch = sum v / sum V0 over the points of the
+ *              patch since the beginning, so that nothing drifts.
+ *
+ * Only elements that hold points count in a patch; a patch with one such element has F-bar = F.
+ *
+ * All loops run over the blocks of patches, those that add to nodes in colours: results are
+ * bitwise the same on any number of threads.
+ */
+#ifndef PW_ENGINE_TET_MODEL_H
+#define PW_ENGINE_TET_MODEL_H
+
+#include "engine/csr.h"
+#include "engine/tet_points.h"
+#include "partition/patch_blocks.h"
+
+typedef enum pw_fbar { PW_FBAR_NONE, PW_FBAR_INCREMENT, PW_FBAR_TOTAL } pw_fbar;
+
+/** What a model is made of. */
+typedef struct pw_tet_setup {
+  pw_tet_mesh *mesh;       /**< borrowed; the model's callers may move it between steps */
+  const pw_tet_fill *fill; /**< its materials are borrowed, the rest is used at once */
+  pw_fbar fbar;
+  int threads; /**< >= 1 */
+} pw_tet_setup;
+
+typedef struct pw_tet_model {
+  pw_tet_mesh *mesh;
+  const pw_tet_material *material;
+  pw_fbar fbar;
+  int threads;
+  pw_walk walk;
+  pw_blocks blocks; /**< of patches */
+  pw_csr csr;       /**< tangent of the last evaluation */
+  pw_tet_points points;
+  pw_idx *elem_start;    /**< [nelem + 1] offsets into elem_point */
+  pw_idx *elem_point;    /**< points by element, ascending in each */
+  pw_idx *elem_order;    /**< [nelem] scratch of the sort */
+  uint8_t *fixed;        /**< [3][nnode] 1: displacement prescribed. Set by the caller */
+  pw_real *prescribed;   /**< [3][nnode] displacement over the step where fixed; m. Likewise */
+  pw_real *external;     /**< [3][nnode] force at the end of the step; N. Likewise */
+  pw_idx *equation;      /**< [3][nnode] row, or -1: fixed, or no point near the node */
+  pw_idx *numbered;      /**< [3][nnode] scratch of the numbering */
+  uint8_t *active;       /**< [nnode] 1: an element with points has the node */
+  pw_real *force;        /**< [3][nnode] internal force of the last evaluation; N */
+  pw_real *lift;         /**< [3][nnode] tangent times prescribed where fixed; N */
+  pw_idx *bad;           /**< [nblock] first failing element of a block, or -1 */
+  pw_walk_counts walked; /**< searches of the last pw_tet_model_begin() */
+  pw_walk_counts *chunk; /**< counts of a chunk of points */
+} pw_tet_model;
+
+/**
+ * @brief Points, blocks and matrix of a mesh at its start; nothing is fixed, no force acts.
+ * @return PW_OK; PW_ERR_ARGUMENT, PW_ERR_MEMORY, PW_ERR_SCENE, PW_ERR_SOLVER, PW_ERR_UNSUPPORTED
+ *         from what it calls.
+ */
+pw_status pw_tet_model_create(const pw_tet_setup *setup, pw_tet_model *out);
+
+/** @brief Free all but the mesh; a zeroed struct is accepted. */
+void pw_tet_model_destroy(pw_tet_model *m);
+
+/**
+ * @brief Begin a step: find the parents of all points, and number the equations of the nodes near
+ *        points that are not fixed. csr.revision changes when the equations do.
+ * @return PW_OK; PW_ERR_POINT_LOST naming a point outside the mesh.
+ */
+pw_status pw_tet_model_begin(pw_tet_model *m);
+
+/**
+ * @brief Internal force, trial stress and, when asked for, tangent and lift.
+ * @param[in] u       [3][nnode] displacements of the nodes since the start of the step; m
+ * @param[in] tangent fill csr and lift
+ * @return PW_OK; PW_RETRY_DOMAIN_INVERTED or PW_RETRY_STRESS naming the first element that fails.
+ */
+pw_status pw_tet_model_evaluate(pw_tet_model *m, const pw_real *u, bool tangent);
+
+/** @brief End a step: points move with @p u [3][nnode], the last one evaluated, and keep their trial
+ *  state. */
+void pw_tet_model_commit(pw_tet_model *m, const pw_real *u);
+
+#endif /* PW_ENGINE_TET_MODEL_H */
