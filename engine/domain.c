@@ -75,7 +75,7 @@ static bool reshape(pw_points *p, pw_idx i, pw_real area, pw_real aspect, pw_rea
   const pw_real det = r[0] * r[3] - r[1] * r[2];
   const pw_real xx = r[0] * r[0] + r[2] * r[2], yy = r[1] * r[1] + r[3] * r[3];
   const pw_real xy = r[0] * r[1] + r[2] * r[3];
-  if (!(det > 0.0) || xx + yy <= det * (aspect + 1.0 / aspect)) {
+  if (!(det > 0.0) || xx + yy <= det * (aspect + 1.0 / aspect) * (1.0 + 1e-12)) {
     return false;
   }
   const pw_real mean = 0.5 * (xx + yy), dev = 0.5 * (xx - yy), root = sqrt(dev * dev + xy * xy);
@@ -100,7 +100,20 @@ static bool reshape(pw_points *p, pw_idx i, pw_real area, pw_real aspect, pw_rea
   return true;
 }
 
-void pw_domain_convect(pw_sim *sim, pw_idx first, pw_idx n, pw_block_sums *sums)
+/* What the half-sides have changed beyond their deformation, r - (I + grad du) r_before. */
+static void note_jump(pw_points *p, pw_idx i, const pw_real *du, const pw_real r[4])
+{
+  const pw_idx ld = p->ld;
+  for (int k = 0; k < 2; k++) {
+    pw_real x = p->half[2 * k * ld + i], y = p->half[(2 * k + 1) * ld + i];
+    p->contact_jump[2 * k * ld + i] = r[2 * k] - (x + du[0] * x + du[PW_CHUNK] * y);
+    p->contact_jump[(2 * k + 1) * ld + i] =
+        r[2 * k + 1] - (y + du[2 * PW_CHUNK] * x + du[3 * PW_CHUNK] * y);
+  }
+}
+
+void pw_domain_convect(pw_sim *sim, const pw_gradients *grad, pw_idx first, pw_idx n,
+                       pw_block_sums *sums)
 {
   pw_points *p = &sim->points;
   const pw_idx ld = p->ld;
@@ -125,6 +138,9 @@ void pw_domain_convect(pw_sim *sim, pw_idx first, pw_idx n, pw_block_sums *sums)
         rebuild(p, i, area, limit, r);
         sums->rebuilt++;
       }
+    }
+    if (p->contact_jump) {
+      note_jump(p, i, &grad->du[0][i - first], r);
     }
     for (int k = 0; k < 4; k++) {
       p->half[k * ld + i] = r[k];

@@ -22,9 +22,14 @@
  * within the halo (pw_domain_reach).
  * A domain that has become degenerate is replaced by the square of its material's area, within
  * the limit, and its initial half-sides by F^-1 r, so that it deforms on from there.
+ * With domain_aspect_max a domain whose principal half-sides differ by more than that ratio is
+ * reshaped at constant area (of its material), as little as is needed, in every step.
+ * @param[in] grad gradients of the step, from which jumps are told from deformation; may be NULL
+ *             when the points have no contact_jump
  * @param[in,out] sums counts of limited and rebuilt domains are added
  */
-void pw_domain_convect(pw_sim *sim, pw_idx first, pw_idx n, pw_block_sums *sums);
+void pw_domain_convect(pw_sim *sim, const pw_gradients *grad, pw_idx first, pw_idx n,
+                       pw_block_sums *sums);
 
 /**
  * @brief Cells of halo that hold every domain of at most @p limit cells, wherever its centre lies

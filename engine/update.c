@@ -275,7 +275,7 @@ static void update_body(const pw_update_pass *pass, batch *s, pw_idx block, int 
     set_bad(sums, deform(sim, s, first, n), PW_RETRY_DOMAIN_INVERTED);
     stress_batch(sim, b, s, first, n, sums);
     if (sim->limit) {
-      pw_domain_convect(sim, first, n, sums);
+      pw_domain_convect(sim, &s->grad, first, n, sums);
     }
   }
 }

@@ -12,6 +12,8 @@ static const pw_real EXPLAINED = 1.1;
 static const pw_real WORK_OUT = 0.25;
 /* Part of half a domain that may stay overlapped without force. */
 static const pw_real LEFT = 0.02;
+/* Jumps of a site that is held are taken up to this part of half a domain. */
+static const pw_real ABSORBED = 0.15;
 
 static void slave_range(const pw_corner *c, pw_idx block, pw_idx *first, pw_idx *last)
 {
@@ -158,8 +160,18 @@ static pw_real next_offset(const pw_corner_pair *q, pw_real old, pw_real slack)
  * unloading: a spring that followed it at constant overlap would push the harder the moment the
  * load turns and give more than it took. So while a contact lasts its stiffness only grows, and
  * it grows at constant force: the overlap that is stretched becomes less, the offset more, and the
- * spring's energy falls by what is booked as dissipated.
+ * spring's energy falls by what is booked as dissipated. A jump of the site that is no motion of
+ * the soil changes the offset, not the force.
  */
+/* Way along the normal that a site has made without motion of the soil: its domain was limited or
+ * reshaped. */
+static pw_real jump_of(const pw_points *p, const pw_corner_pair *q)
+{
+  const pw_idx ld = p->ld, i = q->point;
+  const pw_real *j = p->contact_jump + i, s = pw_site_s[q->site], t = pw_site_t[q->site];
+  return q->place.n[0] * (s * j[0] + t * j[2 * ld]) + q->place.n[1] * (s * j[ld] + t * j[3 * ld]);
+}
+
 static void set_springs(const pw_corner *c, pw_corner_pair *q, const pw_domain_now *d,
                         pw_real modulus, pw_corner_sums *sums)
 {
@@ -173,9 +185,11 @@ static void set_springs(const pw_corner *c, pw_corner_pair *q, const pw_domain_n
     offset = first_offset(c, q, d);
     q->overlap = offset - gap;
   } else {
-    pw_real before = pw_max(p->contact_offset[at] - gap, 0.0);
+    const pw_real held = p->contact_offset[at], jump = jump_of(p, q);
+    const pw_real before = pw_max(held - (gap - jump), 0.0);
     q->relax = q->density > 0.0 ? old / q->density : 1.0;
-    q->overlap = q->relax * (next_offset(q, p->contact_offset[at], slack) - gap);
+    const pw_real kept = pw_min(pw_max(held + jump, pw_min(held, -ABSORBED * slack / LEFT)), 0.0);
+    q->overlap = q->relax * (next_offset(q, kept, slack) - gap);
     offset = gap + q->overlap;
     sums->dissipated += energy(old * q->area, before) - energy(q->stiffness, q->overlap);
   }
