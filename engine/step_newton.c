@@ -19,6 +19,7 @@ struct pw_newton {
   bool has_previous;
   pw_real *unbalanced;    /* [3][nnode] R0 times 1 - alpha */
   pw_real *right, *delta; /* [3 nnode] by equation */
+  pw_real floor;          /* residual that rounding may leave */
 };
 
 pw_newton_options pw_newton_defaults(void)
@@ -100,7 +101,12 @@ static pw_real residual(pw_newton *n)
       load += m->fixed[i] ? m->force[i] * m->force[i] : 0.0;
     }
   }
-  return load > 0.0 ? sqrt(left / load) : left > 0.0 ? INFINITY : 0.0;
+  if (!(load > 0.0)) { /* nothing acts: all that may be left is rounding */
+    n->floor = 0.0;
+    return sqrt(left) <= m->rounding ? 0.0 : INFINITY;
+  }
+  n->floor = m->rounding / sqrt(load);
+  return sqrt(left / load);
 }
 
 static pw_status correct(pw_newton *n)
@@ -180,7 +186,7 @@ static pw_status solve_part(pw_newton *n, const pw_newton_load *load, const pw_r
     PW_TRY(pw_tet_model_evaluate(n->model, n->u, true));
     pw_real r = residual(n);
     report->residual[report->count++] = r;
-    if (r <= n->options.tolerance) {
+    if (r <= pw_max(n->options.tolerance, n->floor)) {
       return PW_OK;
     }
     PW_REQUIRE(r <= hopeless * report->residual[0], PW_RETRY_DIVERGED,

@@ -14,6 +14,8 @@
  *
  * The residual is the norm of what is left at free components over the norm of reactions and
  * external forces together, as AMPLE does (Coombs, Augarde, Adv. Engng Software 142 (2020) 102748).
+ * Strains smaller than about 1e-6 leave more than a small tolerance allows, by rounding alone: an
+ * estimate of that (pw_tet_model.rounding) counts as converged too.
  */
 #ifndef PW_ENGINE_STEP_NEWTON_H
 #define PW_ENGINE_STEP_NEWTON_H

@@ -1,11 +1,15 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "engine/tet_model.h"
 
+#include <math.h>
 #include <string.h>
 
 #include "engine/assemble.h"
 #include "engine/core/mem.h"
 #include "engine/tet_patch.h"
+
+/* Logarithmic strains come from exponentials near 1, whose last digit is this large. */
+static const pw_real strain_rounding = 1e-15;
 
 enum { SEARCH_CHUNK = 4096 }; /* points one thread searches at a time */
 
@@ -26,6 +30,7 @@ void pw_tet_model_destroy(pw_tet_model *m)
   pw_mem_free(&m->active);
   pw_mem_free(&m->force);
   pw_mem_free(&m->lift);
+  pw_mem_free(&m->stiff);
   pw_mem_free(&m->bad);
   pw_mem_free(&m->chunk);
   memset(m, 0, sizeof *m);
@@ -46,6 +51,7 @@ static pw_status allocate(pw_tet_model *m)
   PW_TRY(pw_mem_alloc("nodes: active", n / 3, sizeof *m->active, &m->active));
   PW_TRY(pw_mem_alloc("nodes: internal force", n, sizeof *m->force, &m->force));
   PW_TRY(pw_mem_alloc("nodes: lift", n, sizeof *m->lift, &m->lift));
+  PW_TRY(pw_mem_alloc("blocks: stiffness", m->blocks.nblock, sizeof *m->stiff, &m->stiff));
   PW_TRY(pw_mem_alloc("blocks: failures", m->blocks.nblock, sizeof *m->bad, &m->bad));
   return pw_mem_alloc("search: counts", m->points.n / SEARCH_CHUNK + 1, sizeof *m->chunk,
                       &m->chunk);
@@ -99,10 +105,10 @@ static void search(pw_tet_model *m)
 #pragma omp parallel for schedule(static) default(none) shared(w, motion, q, counts, n, chunks)    \
     num_threads(m->threads)
   for (pw_idx k = 0; k < chunks; k++) {
-    const pw_idx first = k * SEARCH_CHUNK,
-                 last = n - first < SEARCH_CHUNK ? n : first + SEARCH_CHUNK;
+    const pw_idx first = k * SEARCH_CHUNK;
     memset(&counts[k], 0, sizeof counts[k]);
-    pw_walk_points(w, motion, first, last, q->ld, q->x, q->elem, &counts[k]);
+    pw_walk_points(w, motion, n - first < SEARCH_CHUNK ? n - first : SEARCH_CHUNK, q->ld,
+                   q->x + first, q->elem + first, &counts[k]);
   }
   memset(&m->walked, 0, sizeof m->walked);
   for (pw_idx k = 0; k < chunks; k++) {
@@ -210,6 +216,7 @@ static void evaluate_block(void *ctx, pw_idx block)
   pw_tet_model *m = ev->m;
   pw_real force[PW_PATCH_DOFS], k[PW_PATCH_DOFS * PW_PATCH_DOFS];
   m->bad[block] = -1;
+  m->stiff[block] = 0.0;
   for (pw_idx l = m->blocks.elem_start[block]; l < m->blocks.elem_start[block + 1]; l++) {
     const pw_idx p = m->blocks.elem[l];
     pw_patch_motion motion;
@@ -217,6 +224,7 @@ static void evaluate_block(void *ctx, pw_idx block)
     if (bad < 0 && motion.nactive > 0) {
       bad = pw_patch_evaluate(m, p, &motion, force, ev->tangent ? k : NULL);
       scatter(m, p, force, ev->tangent ? k : NULL);
+      m->stiff[block] += motion.rounding;
     }
     if (bad >= 0 && m->bad[block] < 0) {
       m->bad[block] = bad;
@@ -251,6 +259,11 @@ pw_status pw_tet_model_evaluate(pw_tet_model *m, const pw_real *u, bool tangent)
     pw_csr_clear(&m->csr);
   }
   pw_assemble_coloured(&m->blocks, m->threads, evaluate_block, &ev);
+  pw_real sum = 0.0;
+  for (pw_idx k = 0; k < m->blocks.nblock; k++) {
+    sum += m->stiff[k];
+  }
+  m->rounding = tangent ? strain_rounding * sqrt(sum) : m->rounding;
   return check_elements(m, u);
 }
 

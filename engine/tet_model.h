@@ -54,6 +54,9 @@ typedef struct pw_tet_model {
   uint8_t *active;       /**< [nnode] 1: an element with points has the node */
   pw_real *force;        /**< [3][nnode] internal force of the last evaluation; N */
   pw_real *lift;         /**< [3][nnode] tangent times prescribed where fixed; N */
+  pw_real *stiff;        /**< [nblock] squares of forces that a strain of 1 makes in a block; N2 */
+  pw_real rounding;      /**< norm of the forces that rounding of strains may leave, known from the
+                              last evaluation with a tangent; N */
   pw_idx *bad;           /**< [nblock] first failing element of a block, or -1 */
   pw_walk_counts walked; /**< searches of the last pw_tet_model_begin() */
   pw_walk_counts *chunk; /**< counts of a chunk of points */

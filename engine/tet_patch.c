@@ -211,14 +211,26 @@ static void add_patch_term(const int8_t *local, const pw_tet_sums *sums, const p
   }
 }
 
-pw_idx pw_patch_evaluate(const pw_tet_model *m, pw_idx p, const pw_patch_motion *motion,
-                         pw_real *force, pw_real *k)
+/* Square of the force that a strain of 1 makes. */
+static pw_real stiff_force(const pw_tet_sums *sums, const pw_real *g)
+{
+  const pw_real modulus = (sums->modulus[0] + sums->modulus[40] + sums->modulus[80]) / 3.0;
+  pw_real length = 0.0;
+  for (int i = 0; i < 12; i++) {
+    length += g[i] * g[i];
+  }
+  return modulus * modulus * length;
+}
+
+pw_idx pw_patch_evaluate(const pw_tet_model *m, pw_idx p, pw_patch_motion *motion, pw_real *force,
+                         pw_real *k)
 {
   const bool spread = m->fbar != PW_FBAR_NONE && motion->nactive > 1;
   pw_real mean[PW_PATCH_DOFS], own[12];
   pw_tet_sums sums;
   pw_idx bad = -1;
   memset(force, 0, PW_PATCH_DOFS * sizeof *force);
+  motion->rounding = 0.0;
   if (k) {
     memset(k, 0, (size_t)PW_PATCH_DOFS * PW_PATCH_DOFS * sizeof *k);
     mean_gradient(m, p, motion, mean);
@@ -239,6 +251,7 @@ pw_idx pw_patch_evaluate(const pw_tet_model *m, pw_idx p, const pw_patch_motion 
     }
     if (k) {
       add_tangent(local, &sums, g, k);
+      motion->rounding += stiff_force(&sums, g);
     }
     if (k && spread) {
       add_patch_term(local, &sums, g, mean, k);

@@ -17,8 +17,10 @@ typedef struct pw_patch_motion {
   pw_tet_motion motion[PW_PATCH_ELEMENTS];
   pw_real volume[PW_PATCH_ELEMENTS]; /**< of the points now; m3 */
   bool active[PW_PATCH_ELEMENTS];
-  pw_real ratio; /**< v_patch / V_patch, or J_patch */
-  pw_real now;   /**< v_patch; m3 */
+  pw_real ratio;    /**< v_patch / V_patch, or J_patch */
+  pw_real now;      /**< v_patch; m3 */
+  pw_real rounding; /**< out of pw_patch_evaluate() with k: sum over the elements of the square of
+                         sum v times modulus times length of the gradients; N2 */
 } pw_patch_motion;
 
 /** @brief Kinematics of patch @p p for displacements @p u [3][nnode].
@@ -31,7 +33,7 @@ pw_idx pw_patch_move(const pw_tet_model *m, pw_idx p, const pw_real *u, pw_patch
  * @param[out] k     [PW_PATCH_DOFS][PW_PATCH_DOFS] N/m, or NULL
  * @return -1, or the first element with a point whose stress cannot be found.
  */
-pw_idx pw_patch_evaluate(const pw_tet_model *m, pw_idx p, const pw_patch_motion *motion,
-                         pw_real *force, pw_real *k);
+pw_idx pw_patch_evaluate(const pw_tet_model *m, pw_idx p, pw_patch_motion *motion, pw_real *force,
+                         pw_real *k);
 
 #endif /* PW_ENGINE_TET_PATCH_H */

@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "engine/core/mem.h"
+#include "engine/umat.h"
 
 enum { MOST = 11 };
 
@@ -133,6 +134,9 @@ static pw_status check_fill(const pw_tet_mesh *mesh, const pw_tet_fill *fill, co
     PW_REQUIRE(!m->model->needs_left_cg, PW_ERR_UNSUPPORTED,
                "material %s takes F and has no tangent for implicit steps", m->model->name);
     PW_TRY(m->model->check(m->param));
+    if (m->model->needs_library) {
+      PW_TRY(pw_umat_load(m->param));
+    }
   }
   return PW_OK;
 }

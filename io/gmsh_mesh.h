@@ -5,7 +5,8 @@
  *
  * gmsh's own library reads the file. It is loaded when the first mesh is asked for and costs nothing
  * before. Ten-node tetrahedra are made straight: middles of edges move to the middles of their
- * chords. Nodes and cells are numbered by ascending tags. The order in a cell becomes that of engine/tet_mesh.h (gmsh swaps the last two).
+ * chords. Nodes and cells are numbered by ascending tags; nodes that no element of the file has are
+ * left out. The order of nodes in a cell becomes that of engine/tet_mesh.h (gmsh swaps the last two).
  */
 #ifndef PW_IO_GMSH_MESH_H
 #define PW_IO_GMSH_MESH_H

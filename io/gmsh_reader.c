@@ -66,8 +66,10 @@ typedef struct {
   size_t *cell;      /* [ncell] tags */
   size_t *cell_node; /* [ncell][4 or 10] tags */
   size_t nnode, ncell;
-  pw_idx *node_of; /* [largest tag + 1] node, or -1 */
-  pw_idx *cell_of; /* [largest tag + 1] cell, or -1 */
+  pw_idx *node_of; /* [largest tag + 1] node, or -1: nodes ascend with their tags */
+  pw_idx *cell_of; /* [largest tag + 1] cell, or -1: likewise */
+  pw_idx *node_at; /* [nnode] place of a node in the library's list */
+  pw_idx *cell_at; /* [ncell] place of a cell */
   size_t node_tags, cell_tags;
 } reading;
 

@@ -208,12 +208,12 @@ void pw_motion_back(const pw_motion *motion, const pw_real *x, pw_real *back)
   }
 }
 
-void pw_walk_points(const pw_walk *w, const pw_motion *motion, pw_idx first, pw_idx last, pw_idx ld,
+void pw_walk_points(const pw_walk *w, const pw_motion *motion, pw_idx n, pw_idx ld,
                     const pw_real *x, pw_idx *parent, pw_walk_counts *counts)
 {
   const size_t l = (size_t)ld;
-  for (pw_idx p = first; p < last; p++) {
-    pw_real now[3] = {x[p], x[l + (size_t)p], x[2 * l + (size_t)p]}, back[3];
+  for (size_t p = 0; p < (size_t)n; p++) {
+    pw_real now[3] = {x[p], x[l + p], x[2 * l + p]}, back[3];
     pw_motion_back(motion, now, back);
     parent[p] = pw_walk_find(w, back, parent[p], counts);
   }

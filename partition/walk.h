@@ -65,14 +65,15 @@ void pw_walk_destroy(pw_walk *w);
 pw_idx pw_walk_find(const pw_walk *w, const pw_real *x, pw_idx from, pw_walk_counts *counts);
 
 /**
- * @brief Owners of points [first, last) on a mesh that has moved.
+ * @brief Owners of @p n points on a mesh that has moved.
  *
  * The inverse matrices are kept and every point is taken back instead.
+ * @param[in]     ld     leading dimension of @p x
  * @param[in]     x      [3][ld] m
- * @param[in,out] parent [ld] element before and after; PW_WALK_OUTSIDE where there is none
+ * @param[in,out] parent [n] element before and after; PW_WALK_OUTSIDE where there is none
  * @param[in,out] counts added to
  */
-void pw_walk_points(const pw_walk *w, const pw_motion *motion, pw_idx first, pw_idx last, pw_idx ld,
+void pw_walk_points(const pw_walk *w, const pw_motion *motion, pw_idx n, pw_idx ld,
                     const pw_real *x, pw_idx *parent, pw_walk_counts *counts);
 
 /** @brief Owner by testing all elements: the reference for tests. */

@@ -116,7 +116,7 @@ static void bad_files_are_named(void **state)
                  "gmsh cannot read the file");
   snprintf(text, sizeof text, "%s1\n1 2 2 0 1 1 2 3\n$EndElements\n", head);
   expect_content(text, PW_ERR_SCENE, "no tetrahedra");
-  snprintf(text, sizeof text, "%s1\n1 4 2 0 1 1 2 3 4\n$EndElements\n", head);
+  snprintf(text, sizeof text, "%s2\n1 4 2 0 1 1 2 3 4\n2 2 2 0 1 1 2 9\n$EndElements\n", head);
   expect_content(text, PW_ERR_SCENE, "node 9 at (5, 6, 7) belongs to no tetrahedron");
   snprintf(text, sizeof text, "%s2\n1 4 2 0 1 1 2 3 4\n2 7 2 0 1 1 2 3 4 9\n$EndElements\n", head);
   expect_content(text, PW_ERR_SCENE, "type 7 are no tetrahedra");

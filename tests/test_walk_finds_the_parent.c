@@ -153,7 +153,7 @@ static void owners_turn_with_the_mesh(void **state)
   for (int i = 0; i < 3 * N; i++) {
     x0[i] = test_random(&seed);
   }
-  pw_walk_points(&w, &m.motion, 0, N, N, x0, first, &c); /* from element 0 */
+  pw_walk_points(&w, &m.motion, N, N, x0, first, &c); /* from element 0 */
   memcpy(now, first, sizeof now);
   memset(&c, 0, sizeof c);
   for (int step = 1; step <= 80; step++) { /* 400 degrees, 5 a step */
@@ -169,7 +169,7 @@ static void owners_turn_with_the_mesh(void **state)
                        rot[3 * k + 2] * x0[2 * N + i] + shift[k];
       }
     }
-    pw_walk_points(&w, &m.motion, 0, N, N, x, now, &c);
+    pw_walk_points(&w, &m.motion, N, N, x, now, &c);
     assert_memory_equal(now, first, sizeof now);
   }
   assert_int_equal(c.tests, c.points); /* nothing leaves its element */
