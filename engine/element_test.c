@@ -101,7 +101,10 @@ static pw_status done(stages *s)
 
 static pw_status drive(stages *s, const pw_element_step *step)
 {
+  s->el.why = NULL;
   pw_status status = pw_element_drive(&s->el, step);
+  PW_REQUIRE(status == PW_OK || !s->el.why, PW_RETRY_DIVERGED, "stage %d, step %d: %s", s->stage,
+             s->step + 1, s->el.why);
   PW_REQUIRE(status == PW_OK, PW_RETRY_DIVERGED,
              "stage %d, step %d cannot be made (%s): the stress asked for may be out of reach",
              s->stage, s->step + 1, pw_status_text(status));

@@ -61,7 +61,7 @@ const pw_key pw_scene_keys_method[] = {
   {"domain_limit_cells", PW_KEY_REAL, AT(method.domain_limit_cells), 0, 100, "1", NULL, NULL,
    "largest half diagonal of a point's domain; 0: no limit"},
   {"domain_aspect_max", PW_KEY_REAL, AT(method.domain_aspect_max), 0, 1e6, "0", NULL, NULL,
-   "largest ratio of a domain's principal half-sides, above which it is reshaped; 0: no limit"},
+   "largest ratio of a domain's half-sides, in cells, above which it is reshaped; 0: no limit"},
   {"mass_cut_off", PW_KEY_REAL, AT(method.mass_cut_off), 0, 0.1, "1e-9", NULL, NULL,
    "nodes with less than this part of a full cell's mass stay at rest"},
   {"noise_damping_per_s", PW_KEY_REAL, AT(method.noise_damping_per_s), 0, 1e6, "0", NULL, NULL,
@@ -120,12 +120,17 @@ const pw_key pw_scene_keys_body[] = {
    "edge of the largest point domains; 0: points_per_cell says how many there are"},
   {"points_per_cell", PW_KEY_INT, AT_BODY(points_per_cell), 0, 4, "0", NULL, "shape=rectangle",
    "point domains in each cell of the grid, in each direction; instead of point_size_m"},
+  {"hole_centre_m", PW_KEY_PAIR, AT_BODY(hole_centre_m), -FAR_M, FAR_M, "[0, 0]", NULL,
+   "shape=rectangle", "centre of a round hole"},
+  {"hole_radius_m", PW_KEY_REAL, AT_BODY(hole_radius_m), 0, FAR_M, "0", NULL, "shape=rectangle",
+   "domains whose centres lie in it are left out, for a body that stands there; 0: no hole"},
   {"mass_kg", PW_KEY_REAL, AT_BODY(mass_kg), 0, 1e15, "0", NULL, "kind=rigid",
    "of the whole body, per metre of depth in plane strain; 0: density times volume"},
   {"rod_elements", PW_KEY_INT, AT_BODY(rod_elements), 1, 100000, "40", NULL, "kind=rod",
    "equal elements along the rod"},
   {"surface_segment_m", PW_KEY_REAL, AT_BODY(surface_segment_m), 0, FAR_M, "0", NULL,
-   "kind=rigid|rod", "largest pieces of its surface; 0: a quarter of a cell, finer on round parts"},
+   "kind=rigid|rod",
+   "largest pieces of its surface, at most a cell; 0: a quarter of a cell, finer on round parts"},
   {"velocity_m_s", PW_KEY_PAIR, AT_BODY(velocity_m_s), -1e6, 1e6, "[0, 0]", NULL, NULL,
    "velocity at the start"},
   {0}};
@@ -175,6 +180,9 @@ static void parse_fallback(const pw_key *key, pw_key_value *out)
     break;
   case PW_KEY_TEXT:
     strncpy(out->text, key->fallback, PW_NAME - 1);
+    break;
+  case PW_KEY_FILE:
+    strncpy(out->text, key->fallback, PW_FILE_NAME - 1);
     break;
   case PW_KEY_BODY:
   case PW_KEY_MATERIAL:

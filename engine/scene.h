@@ -60,6 +60,8 @@ typedef struct pw_scene_body {
   pw_real tip_length_m;          /**< pile: height of the rounded or conical part */
   pw_real point_size_m;          /**< edge of the largest domains; 0 with points_per_cell */
   int points_per_cell;           /**< domains in a cell in each direction; 0: by point_size_m */
+  pw_real hole_centre_m[2];      /**< rectangle: domains centred in this circle are left out */
+  pw_real hole_radius_m;         /**< 0: no hole */
   pw_real mass_kg;               /**< rigid: of the whole body; 0: from density and volume */
   int rod_elements;              /**< rod: elements along its length */
   pw_real surface_segment_m;     /**< rigid, rod: pieces of its surface; 0: chosen */

@@ -5,6 +5,7 @@
 #include "engine/effect.h"
 #include "engine/mesh_grade.h"
 #include "engine/structure_sim.h"
+#include "engine/umat.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -77,7 +78,10 @@ pw_status pw_scene_check_material(const pw_scene *s, int i)
                "two materials have the name '%s'", m->name);
   }
   PW_REQUIRE(m->model, PW_ERR_SCENE, "material '%s' has no model", m->name);
-  return m->model->check ? m->model->check(m->param) : PW_OK;
+  if (m->model->check) {
+    PW_TRY(m->model->check(m->param));
+  }
+  return m->model->needs_library ? pw_umat_load(m->param) : PW_OK;
 }
 
 /* Smallest box around a body: {left, right, bottom, top}; in axisymmetry half of a pile. */

@@ -7,7 +7,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* A material keeps every parameter as a pw_real. */
+/* A material keeps every number as a pw_real. */
 static bool stores_reals(const pw_key *keys)
 {
   for (int i = 0; pw_material_at(i); i++) {
@@ -103,11 +103,24 @@ static void store_index(const pw_key *key, pw_real value, unsigned char *at)
   }
 }
 
+/* Of a material: the number, or the count of a list before its numbers. */
+static void store_reals(const pw_key *key, const pw_key_value *value, unsigned char *at)
+{
+  if (key->type == PW_KEY_REALS) {
+    const pw_real count = value->n;
+    memcpy(at, &count, sizeof count);
+    memcpy(at + sizeof count, value->v, (size_t)value->n * sizeof(pw_real));
+  } else {
+    memcpy(at, value->v, sizeof(pw_real));
+  }
+}
+
 void pw_key_store(const pw_key *keys, const pw_key *key, const pw_key_value *value, void *base)
 {
   unsigned char *at = (unsigned char *)base + key->offset;
-  if (stores_reals(keys)) {
-    memcpy(at, &value->v[0], sizeof value->v[0]);
+  const bool is_text = key->type == PW_KEY_TEXT || key->type == PW_KEY_FILE;
+  if (stores_reals(keys) && !is_text) {
+    store_reals(key, value, at);
     return;
   }
   switch (key->type) {
@@ -125,6 +138,9 @@ void pw_key_store(const pw_key *keys, const pw_key *key, const pw_key_value *val
   }
   case PW_KEY_TEXT:
     memcpy(at, value->text, PW_NAME);
+    break;
+  case PW_KEY_FILE:
+    memcpy(at, value->text, PW_FILE_NAME);
     break;
   case PW_KEY_INT:
   case PW_KEY_BOOL:

@@ -4,7 +4,7 @@
  * @brief Values of key tables: parsing the written form, storing, conditions (layer 3).
  *
  * The only place that knows which C type stands behind each pw_key_type. A material's table stores
- * every value as a pw_real (kernels/material.h); it is recognised by its address among
+ * every number as a pw_real (kernels/material.h); it is recognised by its address among
  * kernels/materials.def, so that callers need not care.
  */
 #ifndef PW_ENGINE_SCENE_KEYS_H
@@ -16,7 +16,7 @@
 typedef struct pw_key_value {
   int n; /**< numbers in v; 1 for INT, BOOL, CHOICE, BODY and MATERIAL (an index) */
   pw_real v[PW_LIST];
-  char text[PW_NAME]; /**< for PW_KEY_TEXT */
+  char text[PW_FILE_NAME]; /**< for PW_KEY_TEXT and PW_KEY_FILE */
 } pw_key_value;
 
 /**

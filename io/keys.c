@@ -70,6 +70,8 @@ const char *pw_key_type_text(pw_key_type type)
     return "word";
   case PW_KEY_TEXT:
     return "text";
+  case PW_KEY_FILE:
+    return "file";
   case PW_KEY_BODY:
     return "body";
   case PW_KEY_MATERIAL:

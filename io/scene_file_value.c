@@ -4,6 +4,7 @@
 
 #include <limits.h>
 #include <math.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <strings.h>
@@ -184,12 +185,31 @@ static bool read_text(pw_reader *r, const pw_key *key, const pw_yaml_node *node,
       return false;
     }
   }
-  if (strlen(node->text) >= PW_NAME) {
+  if (strlen(node->text) >= PW_NAME && key->type == PW_KEY_TEXT) {
     pw_yaml_error(r->m, &node->place, "'%s' is too long: %d bytes at most, found %zu", key->name,
                   PW_NAME - 1, strlen(node->text));
     return false;
   }
-  strcpy(out, node->text);
+  snprintf(out, PW_FILE_NAME, "%s", node->text);
+  return true;
+}
+
+/* A path; what is written in a file is relative to that file's folder. */
+static bool read_file(pw_reader *r, const pw_key *key, const pw_yaml_node *node, char *out)
+{
+  if (!read_text(r, key, node, out)) {
+    return false;
+  }
+  const int file = -2 - node->place.set;
+  const char *home = node->place.set >= 0 ? "" : file >= 0 ? r->m->file[file].name : r->m->name;
+  const char *slash = node->text[0] == '/' ? NULL : strrchr(home, '/');
+  int folder = slash ? (int)(slash + 1 - home) : 0;
+  int length = snprintf(out, PW_FILE_NAME, "%.*s%s", folder, home, node->text);
+  if (!node->text[0] || length < 0 || length >= PW_FILE_NAME) {
+    pw_yaml_error(r->m, &node->place, "'%s' must name a file, with at most %d bytes", key->name,
+                  PW_FILE_NAME - 1 - folder);
+    return false;
+  }
   return true;
 }
 
@@ -240,6 +260,8 @@ bool pw_reader_value(pw_reader *r, const pw_key *key, const pw_yaml_node *node, 
     return read_choice(r, key, node, out->v);
   case PW_KEY_TEXT:
     return read_text(r, key, node, out->text);
+  case PW_KEY_FILE:
+    return read_file(r, key, node, out->text);
   case PW_KEY_BODY:
   case PW_KEY_MATERIAL:
     return read_reference(r, key, node, out->v);

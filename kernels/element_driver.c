@@ -91,12 +91,15 @@ pw_status pw_element_move(pw_element *el, const pw_real *de, const pw_real *spin
                          .ld = 1,
                          .ldi = 1,
                          .dt = 1.0,
+                         .time = (pw_real)el->moves,
+                         .step = el->moves,
                          .dstrain = de,
                          .spin = turn,
                          .dvol = &dvol,
                          .left_cg = b,
                          .jac = &jac,
                          .density = &next.density,
+                         .def_grad = next.f,
                          .increment = step,
                          .stress = next.stress,
                          .state = next.state,
@@ -105,11 +108,13 @@ pw_status pw_element_move(pw_element *el, const pw_real *de, const pw_real *spin
                          .counts = &next.counts};
   pw_status s = el->material->update(el->param, &args);
   if (s != PW_OK) {
+    el->why = args.why;
     return s;
   }
   for (int c = 0; c < 6; c++) {
     next.strain[c] += de[c];
   }
+  next.moves++;
   *el = next;
   return PW_OK;
 }
@@ -286,7 +291,9 @@ static pw_status newton(pw_element *el, const pw_element_step *step)
   pw_real de[6], next_de[6], change[6] = {0}, tangent[36], next_tangent[36];
   pw_element trial = *el;
   predict(el, step, de);
-  PW_TRY(pw_element_move(&trial, de, step->spin, tangent));
+  pw_status first = pw_element_move(&trial, de, step->spin, tangent);
+  el->why = first != PW_OK ? trial.why : el->why;
+  PW_TRY(first);
   pw_real miss = mismatch(&trial, step);
   for (int it = 0; it < ITERATIONS && miss > el->tolerance; it++) {
     pw_real scale = 1.0, next_miss = HUGE_VAL;
@@ -301,6 +308,7 @@ static pw_status newton(pw_element *el, const pw_element_step *step)
       }
       pw_status s = pw_element_move(&next, next_de, step->spin, next_tangent);
       next_miss = s == PW_OK ? mismatch(&next, step) : HUGE_VAL;
+      el->why = s == PW_OK ? el->why : next.why;
     }
     if (!(next_miss < miss)) {
       break;
@@ -341,7 +349,9 @@ pw_status pw_element_drive(pw_element *el, const pw_element_step *step)
     } else if (piece > 1) {
       piece /= 2;
     } else {
+      const char *why = el->why;
       *el = start;
+      el->why = why;
       return PW_RETRY_DIVERGED;
     }
   }

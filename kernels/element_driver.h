@@ -26,6 +26,8 @@ typedef struct pw_element {
   pw_real wave_speed;        /**< after the last move; m/s */
   pw_material_counts counts; /**< of accepted moves */
   pw_real last[6];           /**< strain increment of the last step under mixed control; - */
+  pw_off moves;              /**< accepted */
+  const char *why;           /**< what the material said when a move failed last, or NULL */
   pw_real tolerance;         /**< of a prescribed stress, relative to |stress| + 1 Pa */
 } pw_element;
 

@@ -18,7 +18,7 @@
 #include "engine/core/key.h"
 #include "engine/core/status.h"
 
-enum { PW_MAX_PARAMS = 32, PW_MAX_STATE = 16 };
+enum { PW_MAX_PARAMS = 320, PW_MAX_STATE = 64 };
 
 /** Counters a batch adds to; summed over blocks in block order. */
 typedef struct pw_material_counts {
@@ -35,6 +35,8 @@ typedef struct pw_stress_args {
   pw_idx ld;                  /**< leading dimension of stress and state */
   pw_idx ldi;                 /**< leading dimension of the increments and outputs */
   pw_real dt;                 /**< s */
+  pw_real time;               /**< at the start of the step; s */
+  pw_off step;                /**< steps made before this one */
   const pw_real *dstrain;     /**< [6][ldi] increment of strain D dt, tensor shears; - */
   const pw_real *spin;        /**< [3][ldi] increment of spin W dt: xy, yz, zx with
                                W_xy = (dv_x/dy - dv_y/dx)/2; rad */
@@ -43,6 +45,8 @@ typedef struct pw_stress_args {
                                material sets needs_left_cg */
   const pw_real *jac;         /**< [ldi] J = det F at the end of the step, or NULL likewise */
   const pw_real *density;     /**< [ldi] at the end of the step; kg/m3 */
+  const pw_real *def_grad;    /**< [9][ldi] F at the end of the step, row-major, or NULL unless the
+                               material sets needs_def_grad; - */
   const pw_real *increment;   /**< [9][ldi] F(n+1) F(n)^-1 of the step, row-major, or NULL: it is
                                1 + dstrain + spin; - */
   pw_real *stress;            /**< [6][ld] Cauchy stress, in and out; Pa */
@@ -54,6 +58,8 @@ typedef struct pw_stress_args {
                                F(n+1) <- (1 + e) F(n+1) in the same step */
   pw_material_counts *counts; /**< added to, or NULL */
   pw_idx bad;                 /**< out: first failing point of the batch, or -1 */
+  const char *why;            /**< out, where a model can tell: why that point failed; its text
+                               outlives the run */
 } pw_stress_args;
 
 /** A state variable: its name with unit, for output ("void_ratio", "intergranular_strain_xx"). */
@@ -66,11 +72,14 @@ typedef struct pw_state_def {
 typedef struct pw_material {
   const char *name;           /**< as written in a scene: "hypoplastic_sand" */
   const char *brief;          /**< one line, with its source */
-  const pw_key *keys;         /**< parameters: PW_KEY_REAL, PW_KEY_BOOL or PW_KEY_CHOICE rows whose
-                                  offset is index * sizeof(pw_real): every value is stored as a
-                                  pw_real (false = 0, true = 1, a choice as its index) */
+  const pw_key *keys;         /**< parameters: rows whose offset is index * sizeof(pw_real): every
+                                  number is stored as a pw_real (false = 0, true = 1, a choice as
+                                  its index), a list as its count and its numbers from there on,
+                                  texts and files as bytes from there on */
   const pw_state_def *states; /**< all state variables it may carry, in order */
   bool needs_left_cg;         /**< stress follows from F, not from increments */
+  bool needs_def_grad;        /**< wants F beside the increments where there is one */
+  bool needs_library;         /**< a shared library must be loaded first (engine/umat.h) */
   bool takes_initial_stress;  /**< may start from a prescribed stress */
   /** @brief Cross-parameter rules. @return PW_OK or PW_ERR_SCENE with the broken rule. */
   pw_status (*check)(const pw_real *param);

@@ -148,6 +148,10 @@ def check_sources(root):
     return len(files), errors
 
 
+# What Fortran routines call back, by the names they use for it.
+CALLED_BACK = r"(xit|stdb_abqerr|sinv|sprinc|sprind|rotsig|getoutdir|getjobname|getnumcpus)_$|_gfortran_"
+
+
 def check_symbols(library):
     """External symbols of the C objects must be pw_*; C++ objects may add mangled names."""
     out = subprocess.run(["nm", "-g", "--defined-only", "-P", "-A", str(library)],
@@ -159,7 +163,8 @@ def check_symbols(library):
         count += 1
         cxx = ".cxx" in member and (symbol.startswith("_Z") or kind in "VWu")
         sanitizer = re.match(r"(__|\.)?(asan|odr_asan|tsan|ubsan)", symbol.lstrip("_"))
-        if not (symbol.startswith("pw_") or cxx or sanitizer):
+        fortran = member.startswith("umat_") and re.match(CALLED_BACK, symbol)
+        if not (symbol.startswith("pw_") or cxx or sanitizer or fortran):
             errors.append(f"{member}: external symbol {symbol} lacks the prefix pw_")
     return count, errors
 

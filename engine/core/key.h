@@ -13,7 +13,7 @@
 
 #include "engine/core/types.h"
 
-enum { PW_NAME = 64, PW_LIST = 16 };
+enum { PW_NAME = 64, PW_LIST = 64, PW_FILE_NAME = 256 };
 
 /** What a key holds, and the C type at its offset. */
 typedef enum pw_key_type {
@@ -24,6 +24,7 @@ typedef enum pw_key_type {
   PW_KEY_BOOL,     /**< bool, written true | false */
   PW_KEY_CHOICE,   /**< int: index into pw_key.choices */
   PW_KEY_TEXT,     /**< char[PW_NAME] */
+  PW_KEY_FILE,     /**< char[PW_FILE_NAME]: a path, relative to the file it is written in */
   PW_KEY_BODY,     /**< int: index of a body of the scene, -1 when absent */
   PW_KEY_MATERIAL, /**< int: index of a material of the scene */
 } pw_key_type;
