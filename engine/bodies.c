@@ -26,6 +26,10 @@ pw_real pw_domain_area(const pw_real *half4)
 
 void pw_domain_add(pw_domain_list *list, const pw_real *x, const pw_real *half4)
 {
+  if (list->hole_radius > 0.0 &&
+      hypot(x[0] - list->hole[0], x[1] - list->hole[1]) < list->hole_radius) {
+    return;
+  }
   pw_off i = list->n++;
   if (!list->out) {
     return;
@@ -106,6 +110,8 @@ static pw_status fill(const pw_scene *scene, pw_domain_list *list)
   for (int i = 0; i < scene->nbody; i++) {
     const pw_scene_body *b = &scene->body[i];
     list->body = i;
+    list->hole = b->hole_centre_m;
+    list->hole_radius = b->hole_radius_m;
     if (b->kind != PW_BODY_POINTS) {
       continue;
     }

@@ -15,6 +15,8 @@ typedef struct pw_domain_list {
   pw_off n;            /**< domains so far */
   pw_idx body;         /**< body of the domains added now */
   const pw_mesh *mesh; /**< the grid, for points_per_cell */
+  const pw_real *hole; /**< centre of the hole of the present body */
+  pw_real hole_radius; /**< domains centred in it are not added; 0: no hole */
 } pw_domain_list;
 
 /** @brief Add the domain of centre @p x [2] and half vectors r1 = (a, b), r2 = (c, d); m. */

@@ -3,6 +3,8 @@
 
 #include <math.h>
 
+#include "engine/effects/contact_corner_domain.h"
+
 /* Shorten the half diagonals r1 + r2 and r1 - r2 to at most limit; true when one was longer. */
 static bool limit_diagonals(pw_real r[4], pw_real limit)
 {
@@ -65,13 +67,10 @@ static void rebuild(pw_points *p, pw_idx i, pw_real area, pw_real limit, pw_real
 
 /*
  * Keep the ratio of the principal half-sides of a domain: above @p aspect the longer one is
- * shortened and the shorter one lengthened until the area is what the point's volume needs, and the
- * initial half-sides follow (F^-1 r). A domain that deforms on is reshaped a little in every step,
- * so that it never jumps. True when reshaped.
+ * shortened and the shorter one lengthened until the area is @p area. True when that was needed.
  */
-static bool reshape(pw_points *p, pw_idx i, pw_real area, pw_real aspect, pw_real r[4])
+static bool limit_aspect(pw_real r[4], pw_real area, pw_real aspect)
 {
-  const pw_idx ld = p->ld;
   const pw_real det = r[0] * r[3] - r[1] * r[2];
   const pw_real xx = r[0] * r[0] + r[2] * r[2], yy = r[1] * r[1] + r[3] * r[3];
   const pw_real xy = r[0] * r[1] + r[2] * r[3];
@@ -86,16 +85,37 @@ static bool reshape(pw_points *p, pw_idx i, pw_real area, pw_real aspect, pw_rea
   const pw_real c2 = 0.5 * (1.0 + dev / root), s2 = 0.5 * (1.0 - dev / root), cs = 0.5 * xy / root;
   const pw_real sxx = shorter + (longer - shorter) * c2, syy = shorter + (longer - shorter) * s2;
   const pw_real sxy = (longer - shorter) * cs;
-  pw_real f[4], n[4] = {sxx * r[0] + sxy * r[1], sxy * r[0] + syy * r[1], sxx * r[2] + sxy * r[3],
-                        sxy * r[2] + syy * r[3]};
+  for (int k = 0; k < 4; k += 2) {
+    pw_real x = r[k], y = r[k + 1];
+    r[k] = sxx * x + sxy * y;
+    r[k + 1] = sxy * x + syy * y;
+  }
+  return true;
+}
+
+/* The same with lengths measured in the cell that holds the point; the initial half-sides follow
+ * (F^-1 r). A domain that deforms on is reshaped a little in every step, so it never jumps. */
+static bool reshape(pw_sim *sim, pw_idx i, pw_real area, pw_real r[4])
+{
+  pw_points *p = &sim->points;
+  const pw_idx ld = p->ld;
+  pw_real x[2] = {p->x[i], p->x[ld + i]}, cell[2] = {1.0, 1.0};
+  if (sim->mesh.graded) {
+    pw_mesh_size_at(&sim->mesh, x, cell);
+  }
+  pw_real s[4] = {r[0] / cell[0], r[1] / cell[1], r[2] / cell[0], r[3] / cell[1]};
+  if (!limit_aspect(s, area / (cell[0] * cell[1]), sim->scene.method.domain_aspect_max)) {
+    return false;
+  }
+  pw_real f[4];
   for (int k = 0; k < 4; k++) {
     f[k] = p->def_grad[k * ld + i];
-    r[k] = n[k];
+    r[k] = s[k] * cell[k % 2];
   }
   const pw_real inv = 1.0 / (f[0] * f[3] - f[1] * f[2]);
   for (int k = 0; k < 2; k++) {
-    p->half0[2 * k * ld + i] = inv * (f[3] * n[2 * k] - f[1] * n[2 * k + 1]);
-    p->half0[(2 * k + 1) * ld + i] = inv * (f[0] * n[2 * k + 1] - f[2] * n[2 * k]);
+    p->half0[2 * k * ld + i] = inv * (f[3] * r[2 * k] - f[1] * r[2 * k + 1]);
+    p->half0[(2 * k + 1) * ld + i] = inv * (f[0] * r[2 * k + 1] - f[2] * r[2 * k]);
   }
   return true;
 }
@@ -109,6 +129,33 @@ static void note_jump(pw_points *p, pw_idx i, const pw_real *du, const pw_real r
     p->contact_jump[2 * k * ld + i] = r[2 * k] - (x + du[0] * x + du[PW_CHUNK] * y);
     p->contact_jump[(2 * k + 1) * ld + i] =
         r[2 * k + 1] - (y + du[2 * PW_CHUNK] * x + du[3 * PW_CHUNK] * y);
+  }
+  p->contact_jump[4 * ld + i] = p->contact_jump[5 * ld + i] = 0.0;
+}
+
+/*
+ * A domain that is held by the master and changes its shape keeps its place at the master: the
+ * centre takes back the mean jump of the sites that are held. A domain that grew into the master
+ * instead would be pushed out with the soil around it, and the contact would do work that no load
+ * supplies.
+ */
+static void hold_place(pw_points *p, pw_idx i, bool axi)
+{
+  const pw_idx ld = p->ld;
+  pw_real *j = p->contact_jump + i, shift[2] = {0.0, 0.0}, held = 0.0;
+  for (int site = 0; site < PW_SITES; site++) {
+    if (p->contact_arc[site * ld + i] >= 0.0) {
+      shift[0] -= pw_site_s[site] * j[0] + pw_site_t[site] * j[2 * ld];
+      shift[1] -= pw_site_s[site] * j[ld] + pw_site_t[site] * j[3 * ld];
+      held += 1.0;
+    }
+  }
+  if (held > 0.0) {
+    const pw_real most = axi ? 0.1 * p->x[i] : PW_HUGE;
+    j[4 * ld] = pw_max(-most, pw_min(shift[0] / held, most));
+    j[5 * ld] = shift[1] / held;
+    p->x[i] += j[4 * ld];
+    p->x[ld + i] += j[5 * ld];
   }
 }
 
@@ -128,10 +175,10 @@ void pw_domain_convect(pw_sim *sim, const pw_gradients *grad, pw_idx first, pw_i
       r[2 * k + 1] = f[2 * ld] * x + f[3 * ld] * y;
     }
     pw_real limit;
-    if (aspect > 0.0 && reshape(p, i, axi ? p->vol[i] / p->x[i] : p->vol[i], aspect, r)) {
-      sums->reshaped++;
-    }
+    bool changed = aspect > 0.0 && reshape(sim, i, axi ? p->vol[i] / p->x[i] : p->vol[i], r);
+    sums->reshaped += changed ? 1 : 0;
     if (limit_domain(sim, i, r, &limit)) {
+      changed = true;
       sums->limited++;
       pw_real area = axi ? p->vol[i] / p->x[i] : p->vol[i];
       if (4.0 * (r[0] * r[3] - r[1] * r[2]) < PW_DOMAIN_DEGENERATE * area) {
@@ -141,6 +188,9 @@ void pw_domain_convect(pw_sim *sim, const pw_gradients *grad, pw_idx first, pw_i
     }
     if (p->contact_jump) {
       note_jump(p, i, &grad->du[0][i - first], r);
+      if (changed) {
+        hold_place(p, i, axi);
+      }
     }
     for (int k = 0; k < 4; k++) {
       p->half[k * ld + i] = r[k];

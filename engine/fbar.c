@@ -18,6 +18,53 @@ void pw_fbar_clear(pw_sim *sim)
   }
 }
 
+/* The part of the stress that works on a change of volume, where F-bar scales the components. */
+static pw_real mean_stress(const pw_sim *sim, pw_idx i)
+{
+  const pw_real *s = sim->points.stress + i;
+  const pw_idx ld = sim->points.ld;
+  return sim->scene.geometry == PW_AXI ? (s[0] + s[ld] + s[2 * ld]) / 3.0 : 0.5 * (s[0] + s[ld]);
+}
+
+void pw_block_fbar_sum(void *ctx, pw_idx block)
+{
+  pw_sim *sim = ctx;
+  pw_fbar_cells *c = sim->fbar;
+  const pw_points *p = &sim->points;
+  for (int b = 0; b < sim->nbody; b++) {
+    const pw_idx *range = sim->blocks.point_start + (pw_off)block * sim->nbody + b;
+    pw_real *sum = cell_sums(sim, b);
+    for (pw_idx i = range[0]; c->body[b] && i < range[1]; i++) {
+      pw_real x[2] = {p->x[i], p->x[p->ld + i]};
+      const pw_idx e = c->element[i] = pw_mesh_locate(&sim->mesh, x);
+      if (e >= 0) {
+        sum[2 * (pw_off)e] += p->vol[i];
+        sum[2 * (pw_off)e + 1] += p->vol[i] * mean_stress(sim, i);
+      }
+    }
+  }
+}
+
+void pw_block_fbar_stress(void *ctx, pw_idx block)
+{
+  pw_sim *sim = ctx;
+  pw_fbar_cells *c = sim->fbar;
+  const pw_points *p = &sim->points;
+  const pw_idx ld = p->ld;
+  const int scaled = sim->scene.geometry == PW_AXI ? 3 : 2;
+  for (int b = 0; b < sim->nbody; b++) {
+    const pw_idx *range = sim->blocks.point_start + (pw_off)block * sim->nbody + b;
+    const pw_real *sum = cell_sums(sim, b);
+    for (pw_idx i = range[0]; i < range[1]; i++) {
+      const pw_idx e = c->body[b] ? c->element[i] : -1;
+      pw_real more = e >= 0 ? sum[2 * (pw_off)e + 1] / sum[2 * (pw_off)e] - mean_stress(sim, i) : 0;
+      for (int k = 0; k < 6; k++) {
+        c->stress[k * ld + i] = p->stress[k * ld + i] + (k < scaled ? more : 0.0);
+      }
+    }
+  }
+}
+
 static pw_real volume_ratio(const pw_real *du, pw_off stride)
 {
   pw_real xx = du[0], xy = du[stride], yx = du[2 * stride], yy = du[3 * stride];
@@ -27,7 +74,7 @@ static pw_real volume_ratio(const pw_real *du, pw_off stride)
 static void gather_range(const pw_update_pass *pass, int b, pw_idx first, pw_idx n)
 {
   pw_sim *sim = pass->sim;
-  pw_fbar *c = sim->fbar;
+  pw_fbar_cells *c = sim->fbar;
   const pw_points *p = &sim->points;
   pw_real *sum = cell_sums(sim, b);
   pw_gradients grad;
@@ -61,7 +108,8 @@ void pw_block_fbar_gather(void *ctx, pw_idx block)
   }
 }
 
-void pw_fbar_gradients(const pw_fbar *c, pw_idx ld, pw_idx first, pw_idx n, pw_gradients *grad)
+void pw_fbar_gradients(const pw_fbar_cells *c, pw_idx ld, pw_idx first, pw_idx n,
+                       pw_gradients *grad)
 {
   for (int k = 0; k < 5; k++) {
     memcpy(grad->du[k], c->du + (pw_off)k * ld + first, (size_t)n * sizeof(pw_real));
@@ -70,7 +118,7 @@ void pw_fbar_gradients(const pw_fbar *c, pw_idx ld, pw_idx first, pw_idx n, pw_g
 
 void pw_fbar_apply(pw_sim *sim, int body, pw_idx first, pw_idx n, pw_real *dstrain, pw_real *dvol)
 {
-  const pw_fbar *c = sim->fbar;
+  const pw_fbar_cells *c = sim->fbar;
   const bool axi = sim->scene.geometry == PW_AXI;
   const pw_real *sum = cell_sums(sim, body);
   pw_real *total = sim->points.volume_ratio + first, *vol = sim->points.vol + first;

@@ -48,7 +48,7 @@ typedef struct pw_report {
   pw_real wall_s; /**< spent in pw_sim_step */
   pw_off bytes_per_point;
   pw_energy energy;
-  pw_off sorts, domains_limited, domains_rebuilt, vertices_clamped;
+  pw_off sorts, domains_limited, domains_rebuilt, domains_reshaped, vertices_clamped;
   pw_material_counts material;
 } pw_report;
 

@@ -72,6 +72,7 @@ void pw_sim_report(const pw_sim *sim, pw_report *out)
                      .sorts = sim->sorts,
                      .domains_limited = sim->limited,
                      .domains_rebuilt = sim->rebuilt,
+                     .domains_reshaped = sim->reshaped,
                      .vertices_clamped = sim->clamped,
                      .material = sim->material};
   memcpy(out->stage_wall_s, sim->stage_wall, sizeof out->stage_wall_s);
@@ -134,17 +135,35 @@ static void hash_bytes(uint64_t *hash, const void *data, size_t size)
   }
 }
 
-/* Bodies of points are told apart by their points' number. */
-static void hash_structure(uint64_t *hash, const pw_scene_body *b)
+static void hash_body(uint64_t *hash, const pw_scene_body *b)
 {
   const pw_real size[] = {b->x_m[0],   b->x_m[1],  b->y_m[0],       b->y_m[1],
                           b->radius_m, b->tip_y_m, b->centre_m[0],  b->centre_m[1],
                           b->length_m, b->mass_kg, b->tip_length_m, b->surface_segment_m};
   const int choice[] = {b->kind, b->shape, b->tip, b->rod_elements, b->material};
-  if (b->kind != PW_BODY_POINTS) {
-    hash_bytes(hash, size, sizeof size);
-    hash_bytes(hash, choice, sizeof choice);
+  hash_bytes(hash, size, sizeof size);
+  hash_bytes(hash, choice, sizeof choice);
+}
+
+/* Parameters as numbers and texts; of a file its name alone, wherever it lies. As many places as
+ * checkpoints have always known, and all of them for models with more. */
+static void hash_material(uint64_t *hash, const pw_scene_material *m)
+{
+  enum { PLACES = 32 };
+  pw_real param[PW_MAX_PARAMS];
+  size_t count = PLACES;
+  memcpy(param, m->param, sizeof param);
+  for (const pw_key *key = m->model->keys; key->name; key++) {
+    count = key->offset >= PLACES * sizeof *param ? PW_MAX_PARAMS : count;
+    if (key->type == PW_KEY_FILE) {
+      char *path = (char *)param + key->offset, *slash = strrchr(path, '/');
+      const size_t length = slash ? strlen(slash + 1) : strlen(path);
+      memmove(path, slash ? slash + 1 : path, length);
+      memset(path + length, 0, PW_FILE_NAME - length);
+    }
   }
+  hash_bytes(hash, m->model->name, strlen(m->model->name));
+  hash_bytes(hash, param, count * sizeof *param);
 }
 
 /* Everything of a scene that results depend on, so not its end, outputs, title and file. */
@@ -162,11 +181,10 @@ static uint64_t scene_hash(const pw_scene *s)
   hash_bytes(&hash, &s->method.mass_cut_off, sizeof(pw_real));
   hash_bytes(&hash, &s->method.noise_damping_per_s, sizeof(pw_real));
   for (int m = 0; m < s->nmaterial; m++) {
-    hash_bytes(&hash, s->material[m].model->name, strlen(s->material[m].model->name));
-    hash_bytes(&hash, s->material[m].param, sizeof s->material[m].param);
+    hash_material(&hash, &s->material[m]);
   }
   for (int b = 0; b < s->nbody; b++) {
-    hash_structure(&hash, &s->body[b]);
+    hash_body(&hash, &s->body[b]);
   }
   for (int e = 0; e < s->neffect; e++) {
     hash_bytes(&hash, s->effect[e].type->name, strlen(s->effect[e].type->name));
@@ -212,8 +230,9 @@ static pw_status archive_numbers(pw_sim *sim, pw_archive *ar)
       &e->external,        &e->contact,      &e->spring,        &e->damping,
       &e->absorbed,        &e->initial,      &e->kinetic,       &sim->external_last,
       &sim->external_gross};
-  pw_off *const count[] = {&sim->step,   &sim->sorts, &sim->limited, &sim->rebuilt, &sim->clamped,
-                           &m->substeps, &m->rhs,     &m->rejected,  &m->forced,    &m->cut_off};
+  pw_off *const count[] = {&sim->step,     &sim->sorts,   &sim->limited, &sim->rebuilt,
+                           &sim->reshaped, &sim->clamped, &m->substeps,  &m->rhs,
+                           &m->rejected,   &m->forced,    &m->cut_off};
   enum { NREAL = sizeof real / sizeof real[0], NCOUNT = sizeof count / sizeof count[0] };
   pw_real r[NREAL];
   pw_off c[NCOUNT];

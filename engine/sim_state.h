@@ -38,6 +38,7 @@ typedef struct pw_block_sums {
   pw_off limited, rebuilt, reshaped;
   pw_idx bad; /**< first point whose stress or domain failed, or -1 */
   pw_status bad_status;
+  const char *why; /**< what its material says, or NULL */
   pw_weights_report weights;
   pw_material_counts material;
   char pad[PW_ALIGN]; /* neighbours in the array belong to other threads */
@@ -82,12 +83,12 @@ struct pw_sim {
   pw_real mass;         /**< of all points; kg per metre or radian */
   pw_real signal_speed; /**< largest c + |v| at the end of the last step; m/s */
   pw_real load_factor;  /**< of gravity now, 0..1: the ramp; 1 without gravity */
-  const pw_real *buoyant; /**< mass of the water that the points at each node displace, in slot
+  const pw_real *buoyant;     /**< mass of the water that the points at each node displace, in slot
                                MASS of [nnode][PW_NODE]; kg; NULL: no ground water */
-  int buoyant_field;      /**< velocity field of those points */
-  struct pw_fbar *fbar;   /**< engine/fbar.h; NULL: off */
-  int node_slot;          /**< PW_NODE_VEL or PW_NODE_REMAP: what a constraint hook is to change */
-  bool sort_needed;       /**< points are not in the order of their blocks */
+  int buoyant_field;          /**< velocity field of those points */
+  struct pw_fbar_cells *fbar; /**< engine/fbar.h; NULL: off */
+  int node_slot;    /**< PW_NODE_VEL or PW_NODE_REMAP: what a constraint hook is to change */
+  bool sort_needed; /**< points are not in the order of their blocks */
 
   pw_energy energy;       /**< kinetic: at the end of the last step */
   pw_real external_last;  /**< energy.external at the end of the last step; J */

@@ -47,11 +47,22 @@ static pw_status constrain(pw_sim *sim, pw_stage stage, int slot)
   return pw_schedule_run(sim, stage);
 }
 
+/* F-bar: the stress that scatters read. */
+static void force_stress(pw_sim *sim)
+{
+  if (sim->fbar) {
+    pw_fbar_clear(sim);
+    pw_assemble_coloured(&sim->blocks, sim->threads, pw_block_fbar_sum, sim);
+    pw_for_blocks(&sim->blocks, sim->threads, pw_block_fbar_stress, sim);
+  }
+}
+
 /* Points to grid, forces, new nodal velocities under all constraints. */
 static pw_status grid_velocity(pw_sim *sim, double *clock)
 {
   pw_nodes_clear(&sim->nodes);
   lap(sim, PW_TIMER_NODES, clock);
+  force_stress(sim);
   pw_assemble_coloured(&sim->blocks, sim->threads, pw_block_p2g, sim);
   lap(sim, PW_TIMER_P2G, clock);
   PW_TRY(pw_schedule_run(sim, PW_STAGE_P2G));
@@ -81,6 +92,7 @@ static void update_points(pw_sim *sim, pw_update_pass *pass)
 static pw_status stress_first(pw_sim *sim, double *clock)
 {
   pw_nodes_clear(&sim->nodes);
+  force_stress(sim);
   pw_assemble_coloured(&sim->blocks, sim->threads, pw_block_p2g_momentum, sim);
   PW_TRY(pw_schedule_run(sim, PW_STAGE_P2G));
   pw_nodes_momentum(&sim->nodes, 0.0, sim->mass_cut_off);

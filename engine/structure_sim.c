@@ -123,6 +123,9 @@ pw_status pw_structure_check(const pw_scene *scene, int body)
   PW_REQUIRE(!rod || scene->material[b->material].model == pw_material_find("linear_elastic"),
              PW_ERR_SCENE, "material: a rod is linear_elastic, '%s' is %s",
              scene->material[b->material].name, scene->material[b->material].model->name);
+  PW_REQUIRE(b->surface_segment_m <= scene->grid.cell_m * (1.0 + 1e-9), PW_ERR_SCENE,
+             "surface_segment_m = %g m must not be longer than a cell, %g m", b->surface_segment_m,
+             scene->grid.cell_m);
   PW_REQUIRE(!rod || b->rod_elements >= 1, PW_ERR_SCENE, "rod_elements: %d, at least 1 is needed",
              b->rod_elements);
   PW_REQUIRE(b->velocity_m_s[0] == 0.0 || (!rod && scene->geometry != PW_AXI), PW_ERR_SCENE,

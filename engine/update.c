@@ -17,7 +17,7 @@ typedef struct {
   pw_gradients grad;
   pw_real dstrain[6 * PW_CHUNK], spin[3 * PW_CHUNK], dvol[PW_CHUNK];
   pw_real left_cg[6 * PW_CHUNK], jac[PW_CHUNK], density[PW_CHUNK];
-  pw_real own_strain[6 * PW_CHUNK]; /* of the points' own gradients: what their stress works on */
+  pw_real def_grad[9 * PW_CHUNK];
   pw_real old_stress[6 * PW_CHUNK], wave_speed[PW_CHUNK];
 } batch;
 
@@ -136,6 +136,19 @@ static void left_cauchy_green(const pw_sim *sim, batch *s, pw_idx first, pw_idx 
   }
 }
 
+/* The deformation gradient in three dimensions. */
+static void copy_def_grad(const pw_sim *sim, batch *s, pw_idx first, pw_idx n)
+{
+  static const int place[5] = {0, 1, 3, 4, 8}; /* of xx, xy, yx, yy, zz in rows */
+  const pw_points *p = &sim->points;
+  memset(s->def_grad, 0, sizeof s->def_grad);
+  for (int c = 0; c < 5; c++) {
+    for (pw_idx i = 0; i < n; i++) {
+      s->def_grad[place[c] * PW_CHUNK + i] = p->def_grad[(pw_off)c * p->ld + first + i];
+    }
+  }
+}
+
 static void set_bad(pw_block_sums *sums, pw_idx point, pw_status status)
 {
   if (point >= 0 && sums->bad < 0) {
@@ -173,7 +186,7 @@ static void sum_batch(const pw_sim *sim, const batch *s, pw_idx first, pw_idx n,
     for (int c = 0; c < 4; c++) { /* xx yy zz xy: the others do no work in the plane */
       pw_real twice = c == 3 ? 2.0 : 1.0;
       w += twice * (sig[c * ld + i] + s->old_stress[c * PW_CHUNK + i]) *
-           s->own_strain[c * PW_CHUNK + i];
+           s->dstrain[c * PW_CHUNK + i];
     }
     pw_real v2 = v[i] * v[i] + v[ld + i] * v[ld + i];
     bad = v2 < PW_HUGE || bad >= 0 ? bad : first + i; /* NaN too */
@@ -221,6 +234,8 @@ static void stress_batch(pw_sim *sim, int b, batch *s, pw_idx first, pw_idx n, p
                          .ld = p->ld,
                          .ldi = PW_CHUNK,
                          .dt = sim->dt,
+                         .time = sim->time,
+                         .step = sim->step,
                          .dstrain = s->dstrain,
                          .spin = s->spin,
                          .dvol = s->dvol,
@@ -235,11 +250,15 @@ static void stress_batch(pw_sim *sim, int b, batch *s, pw_idx first, pw_idx n, p
     args.left_cg = s->left_cg;
     args.jac = s->jac;
   }
-  memcpy(s->own_strain, s->dstrain, sizeof s->own_strain);
+  if (body->model->needs_def_grad) {
+    copy_def_grad(sim, s, first, n);
+    args.def_grad = s->def_grad;
+  }
   if (sim->fbar && sim->fbar->body[b]) {
     share_volume_change(sim, b, s, first, n);
   }
   if (body->model->update(body->param, &args) != PW_OK) {
+    sums->why = sums->bad < 0 ? args.why : sums->why;
     set_bad(sums, first + args.bad, PW_RETRY_STRESS);
   }
   if (p->wave_speed) {
@@ -355,7 +374,7 @@ pw_status pw_update_check(pw_sim *sim)
   for (pw_idx k = 0; k < sim->blocks.nblock; k++) {
     const pw_block_sums *s = &sim->sums[k];
     if (s->bad >= 0) {
-      return fail_at(sim, s->bad, s->bad_status, pw_status_text(s->bad_status));
+      return fail_at(sim, s->bad, s->bad_status, s->why ? s->why : pw_status_text(s->bad_status));
     }
     if (s->weights.lost >= 0) {
       return fail_at(sim, s->weights.lost, PW_ERR_POINT_LOST, "a point left the grid");

@@ -113,6 +113,7 @@ static json_t *counters_json(const pw_report *r, bool *bad)
   put(object, "sorts", json_integer(r->sorts), bad);
   put(object, "domains_limited", json_integer(r->domains_limited), bad);
   put(object, "domains_rebuilt", json_integer(r->domains_rebuilt), bad);
+  put(object, "domains_reshaped", json_integer(r->domains_reshaped), bad);
   put(object, "vertices_clamped", json_integer(r->vertices_clamped), bad);
   put(object, "material_substeps", json_integer(r->material.substeps), bad);
   put(object, "material_rhs", json_integer(r->material.rhs), bad);

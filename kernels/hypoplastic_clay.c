@@ -66,7 +66,8 @@ PW_INLINE factors factors_of(const pw_clay *c, pw_t6 stress, pw_real log_specifi
   k.y = c->y_slope * (0.5 * (ss - 1.0) / i3 + 9.0) + c->y;
   pw_real on_s = 2.0 - (2.0 * ss - 1.0 / 3.0) / (ratio * ratio + ss); /* -m F/a = on_s s - 1/3 */
   pw_t6 m = pw_t6_shift(pw_t6_scale(on_s, k.g.s), -1.0 / 3.0);
-  k.n = pw_t6_scale(k.f_s * k.f_d * k.y / pw_t6_norm(m), linear(c, k.g.s, m));
+  pw_real size = pw_min(k.f_d * k.y, PW_CLAY_N_MAX);
+  k.n = pw_t6_scale(k.f_s * size / pw_t6_norm(m), linear(c, k.g.s, m));
   return k;
 }
 

@@ -51,6 +51,11 @@ enum {
 /** Reference pressure of N; Pa. */
 #define PW_CLAY_P_R 1000.0
 
+/** Largest f_d Y. It is 2^alpha y < 1 on the virgin line, 1 at critical states and on the bounding
+ *  surface; far outside of it, where soil has come apart, N would let the stress grow without
+ *  bound whatever the direction of strain. */
+#define PW_CLAY_N_MAX 1.2
+
 /** What follows from a parameter set alone. */
 typedef struct pw_clay {
   pw_real inv_lambda, n, inv_a, y, alpha, y_slope; /**< y_slope: of Y over (I1 I2 + 9 I3)/I3 */

@@ -61,4 +61,10 @@ expect_exit 0 "$program" run "$scene" $options --out again --resume
 expect_status again finished
 expect_same whole/checkpoint.h5 again/checkpoint.h5
 expect_same whole/history.csv again/history.csv
+
+# Corner contact, a rod, absorbing sides, F-bar and reshaped domains keep more than that.
+if [ -z "${PW_SCENE:-}" ]; then
+  PW_SCENE=$scenes/small_corner.yaml PW_KILLS=1 PW_END_S=0.04 PW_CHECKPOINT_S=0.002 \
+    "$source_dir/tests/check_resume.sh" "$build" "$source_dir" || fail "small_corner.yaml"
+fi
 done_checking

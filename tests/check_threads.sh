@@ -22,4 +22,12 @@ for case in penalty frictional; do
     expect_same ${case}_1/checkpoint.h5 ${case}_$threads/checkpoint.h5
   done
 done
+
+# The same with a rod and corner contact, on a coarse grid.
+coarse="--set grid.cell_m=0.125"
+for threads in 1 3; do
+  expect_exit 0 "$program" run "$source_dir/cases/hammered_pile/corner.yaml" $plain $pile $coarse \
+    --threads $threads --out corner_$threads
+  expect_same corner_1/checkpoint.h5 corner_$threads/checkpoint.h5
+done
 done_checking

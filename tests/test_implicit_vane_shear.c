@@ -12,7 +12,7 @@ enum { STEPS = 14 };
 static void turn(pw_fbar fbar, double *relative)
 {
   static vane v;
-  double torque[2];
+  double torque[2] = {0.0, 0.0};
   assert_ok(vane_start("reference/gmsh/vane_coarse.msh", fbar, 1, &v));
   v.step = 1.5e-4;
   for (int k = 0; k < STEPS; k++) {
@@ -49,7 +49,7 @@ static void elastic_stiffness_is_that_of_plane_strain(void **state)
 {
   (void)state;
   static vane v;
-  double torque[2];
+  double torque[2] = {0.0, 0.0};
   if (!pw_gmsh_available()) {
     skip();
   }

@@ -204,6 +204,31 @@ static void survives_torture(void **unused)
   print_message("%.1f right-hand sides an increment\n", (double)el.counts.rhs / 200.0);
 }
 
+/** f_d Y of a soil far looser than the virgin line at the largest stress ratio would be 20 and
+ *  more; bounded, |N| is at most 1.2 |L:m|/|m| and the stress cannot grow by N alone. */
+static void loose_soil_stays_soft(void **unused)
+{
+  (void)unused;
+  test_material m = clay(0.0);
+  test_set(&m, "void_ratio", 3.0);
+  pw_clay c;
+  pw_clay_derive(m.v, &c);
+  uint64_t seed = 47;
+  double most = 0.0;
+  for (int i = 0; i < 2000; i++) {
+    pw_hypo_point at = {.void_ratio = 3.0, .stress = {-1e3, -1e3, -1e3, 0, 0, 0}};
+    pw_real de[6], far[6];
+    test_random_strain(&seed, 1e4, far);
+    at.stress = pw_hypo_limit(&c.limits, pw_t6_axpy(at.stress, 1.0, pw_t6_load(far, 1)));
+    test_random_strain(&seed, 1.0, de);
+    pw_t6 d = pw_t6_load(de, 1);
+    pw_clay_rates r = pw_clay_evaluate(&c, &at, d);
+    pw_real stiff = r.f_s * 3.0 * (c.c1 + c.c2a);
+    most = fmax(most, pw_t6_norm(r.n) / stiff);
+  }
+  assert_true(most <= 1.2);
+}
+
 static void rotation_keeps_the_invariants(void **unused)
 {
   (void)unused;
@@ -249,6 +274,7 @@ int main(void)
                                      cmocka_unit_test(stiffness_after_turns),
                                      cmocka_unit_test(tangent_is_the_derivative),
                                      cmocka_unit_test(survives_torture),
+                                     cmocka_unit_test(loose_soil_stays_soft),
                                      cmocka_unit_test(rotation_keeps_the_invariants),
                                      cmocka_unit_test(place_does_not_matter),
                                      cmocka_unit_test(bad_parameters_are_named)};

@@ -82,9 +82,9 @@ static void disarm(void)
   watch.armed = false;
 }
 
-static const char *const names[] = {"scenes/good_pile.yaml", "scenes/small_penalty.yaml",
+static const char *const names[] = {"scenes/good_pile.yaml",        "scenes/small_penalty.yaml",
                                     "scenes/small_frictional.yaml", "scenes/small_elastic.yaml",
-                                    "scenes/bad/eight_errors.yaml"};
+                                    "scenes/small_corner.yaml",     "scenes/bad/eight_errors.yaml"};
 
 static size_t load(const char *name, char *text)
 {

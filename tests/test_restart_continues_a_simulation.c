@@ -73,9 +73,16 @@ static void another_scene_is_refused(void **unused)
   static pw_scene scene;
   const char *folder = test_folder(), *file = test_path(folder, "checkpoint.h5");
   test_flying_block(&scene, PW_CPDI);
+  const int other = test_elastic(&scene, 2e6, 0.3, 500.0), own = scene.body[0].material;
   pw_sim *sim = test_sim(&scene, 1);
   assert_ok(pw_restart_write(file, sim));
   pw_sim_destroy(&sim);
+  scene.body[0].material = other; /* as many points as before */
+  sim = test_sim(&scene, 1);
+  assert_int_equal(pw_restart_read(file, sim), PW_ERR_FILE);
+  assert_error_says("scene with other parameters");
+  pw_sim_destroy(&sim);
+  scene.body[0].material = own;
   scene.body[0].point_size_m = 0.25;
   sim = test_sim(&scene, 1);
   assert_int_equal(pw_restart_read(file, sim), PW_ERR_FILE);

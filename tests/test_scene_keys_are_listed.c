@@ -55,6 +55,12 @@ static const char *const dimensionless[] = {
     "split_factor",
     "thin_factor",
     "coefficient",
+    "nprops",
+    "props",
+    "nstatv",
+    "statev_initial",
+    "statev_stress_tensors",
+    "statev_strain_tensors",
 };
 
 typedef void (*table_fn)(const char *name, const pw_key *keys, void *context);

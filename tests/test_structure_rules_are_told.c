@@ -42,6 +42,11 @@ static void shapes_and_places(void **state)
   b->rod_elements = 0;
   expect("rod_elements");
   b = with_soil(PW_BODY_RIGID);
+  b->surface_segment_m = 0.1;
+  assert_ok(pw_scene_check(&scene));
+  b->surface_segment_m = 0.11; /* the search for contact looks one cell around */
+  expect("surface_segment_m = 0.11 m must not be longer than a cell, 0.1 m");
+  b = with_soil(PW_BODY_RIGID);
   b->velocity_m_s[0] = 1.0;
   expect("velocity_m_s: in axisymmetry a rigid body moves along y only");
   b = with_soil(PW_BODY_RIGID);

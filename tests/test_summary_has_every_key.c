@@ -31,7 +31,8 @@ static const pw_report report = {
     .sorts = 11,
     .domains_limited = 12,
     .domains_rebuilt = 13,
-    .vertices_clamped = 14,
+    .domains_reshaped = 14,
+    .vertices_clamped = 15,
     .material = {1, 2, 3, 4, 5},
 };
 
@@ -139,8 +140,8 @@ static void groups_hold_the_report(void **unused)
   assert_near(number_of(energy, "balance_error_relative"), 10.0 / 95.0, 1e-12);
   const json_t *counters = json_object_get(root, "counters");
   static const char *const name[] = {"sorts", "domains_limited", "domains_rebuilt",
-                                     "vertices_clamped"};
-  for (int k = 0; k < 4; k++) {
+                                     "domains_reshaped", "vertices_clamped"};
+  for (int k = 0; k < 5; k++) {
     assert_true(number_of(counters, name[k]) == 11 + k);
   }
   static const char *const material[] = {"material_substeps", "material_rhs", "material_rejected",

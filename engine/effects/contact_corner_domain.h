@@ -18,6 +18,7 @@
 #ifndef PW_EFFECTS_CONTACT_CORNER_DOMAIN_H
 #define PW_EFFECTS_CONTACT_CORNER_DOMAIN_H
 
+#include "engine/core/key.h"
 #include "engine/nodes.h"
 #include "engine/points.h"
 
@@ -80,7 +81,8 @@ static inline pw_real pw_site_inverse_mass(const pw_domain_now *d, int c, pw_rea
   pw_site_weights(d, c, w);
   for (int k = 0; k < 4; k++) {
     pw_real f = 0.25 * (1.0 + pw_site_s[k] * d->a1 + pw_site_t[k] * d->a2);
-    sum += w[k] * w[k] / (f * mass);
+    /* A domain that has turned far across the axis has corners without mass: no bound. */
+    sum += f > 0.0 ? w[k] * w[k] / (f * mass) : PW_HUGE;
   }
   return sum;
 }

@@ -155,7 +155,7 @@ pw_real pw_corner_limit(pw_corner *c)
   }
   const pw_real dt2 = c->sim->dt * c->sim->dt;
   pw_real rate = slave_rate(c), shift = 0.0;
-  if (c->structure && !c->given) {
+  if (c->structure && (!c->given || c->structure->kind == PW_BODY_ROD)) { /* a rod yields */
     shift = structure_rate(c);
     rate += shift;
   } else if (!c->given) {

@@ -155,6 +155,16 @@ static pw_real next_offset(const pw_corner_pair *q, pw_real old, pw_real slack)
   return pw_max(old + less, q->place.gap);
 }
 
+/* Way along the normal that a site has made without motion of the soil: its domain was limited or
+ * reshaped. */
+static pw_real jump_of(const pw_points *p, const pw_corner_pair *q)
+{
+  const pw_idx ld = p->ld, i = q->point;
+  const pw_real *j = p->contact_jump + i, s = pw_site_s[q->site], t = pw_site_t[q->site];
+  return q->place.n[0] * (j[4 * ld] + s * j[0] + t * j[2 * ld]) +
+         q->place.n[1] * (j[5 * ld] + s * j[ld] + t * j[3 * ld]);
+}
+
 /*
  * Stiffness and overlap. The soil's modulus changes by an order of magnitude between loading and
  * unloading: a spring that followed it at constant overlap would push the harder the moment the
@@ -163,15 +173,6 @@ static pw_real next_offset(const pw_corner_pair *q, pw_real old, pw_real slack)
  * spring's energy falls by what is booked as dissipated. A jump of the site that is no motion of
  * the soil changes the offset, not the force.
  */
-/* Way along the normal that a site has made without motion of the soil: its domain was limited or
- * reshaped. */
-static pw_real jump_of(const pw_points *p, const pw_corner_pair *q)
-{
-  const pw_idx ld = p->ld, i = q->point;
-  const pw_real *j = p->contact_jump + i, s = pw_site_s[q->site], t = pw_site_t[q->site];
-  return q->place.n[0] * (s * j[0] + t * j[2 * ld]) + q->place.n[1] * (s * j[ld] + t * j[3 * ld]);
-}
-
 static void set_springs(const pw_corner *c, pw_corner_pair *q, const pw_domain_now *d,
                         pw_real modulus, pw_corner_sums *sums)
 {

@@ -17,18 +17,19 @@ static const pw_key keys[] = {
 
 static void destroy(void **ctx)
 {
-  pw_fbar *c = *ctx;
+  pw_fbar_cells *c = *ctx;
   if (c) {
     pw_mem_free(&c->du);
     pw_mem_free(&c->element);
     pw_mem_free(&c->sum);
+    pw_mem_free(&c->stress);
   }
   pw_mem_free(ctx);
 }
 
 static pw_status create(pw_sim *sim, const void *param, void **ctx)
 {
-  pw_fbar *c;
+  pw_fbar_cells *c;
   const pw_fbar_param *p = param;
   pw_points *points = &sim->points;
   PW_TRY(pw_mem_alloc("fbar", 1, sizeof *c, &c));
@@ -40,11 +41,13 @@ static pw_status create(pw_sim *sim, const void *param, void **ctx)
   PW_TRY(pw_mem_alloc("fbar cells", points->ld, sizeof(pw_idx), &c->element));
   PW_TRY(pw_mem_alloc("fbar volumes", 2 * (pw_off)sim->nbody * sim->mesh.nelem, sizeof(pw_real),
                       &c->sum));
+  PW_TRY(pw_mem_alloc("fbar stress", 6 * (pw_off)points->ld, sizeof(pw_real), &c->stress));
   for (pw_idx i = 0; i < points->ld; i++) {
     points->volume_ratio[i] = 1.0;
     c->element[i] = -1;
   }
   sim->fbar = c;
+  sim->transfer.stress = c->stress;
   return PW_OK;
 }
 
