@@ -281,8 +281,7 @@ const pw_effect pw_effect_contact_corner = {
     .structure_key = "master",
     .point_fields = PW_FIELD_BIT(PW_FIELD_WAVE_SPEED) | PW_FIELD_BIT(PW_FIELD_CONTACT_SLIP) |
                     PW_FIELD_BIT(PW_FIELD_CONTACT_ARC) | PW_FIELD_BIT(PW_FIELD_CONTACT_OFFSET) |
-                    PW_FIELD_BIT(PW_FIELD_CONTACT_STIFFNESS) |
-                    PW_FIELD_BIT(PW_FIELD_CONTACT_JUMP),
+                    PW_FIELD_BIT(PW_FIELD_CONTACT_STIFFNESS) | PW_FIELD_BIT(PW_FIELD_CONTACT_JUMP),
     .keys = keys,
     .hooks = hooks,
     .check = check,
