@@ -83,7 +83,8 @@ static void free_nodes_scatter_less_with_fbar(void **state)
     }
     if (k >= 5) {
       assert_near(plain[k][0], tau, 2.0);
-      assert_near(barred[k][0], tau, 0.65); /* -0.60 and -0.53 in steps 10 and 9, else below 0.4 */
+      /* The independent program's mean stays within 0.5; here steps 9 and 10 miss that. */
+      assert_near(barred[k][0], tau, k == 9 || k == 10 ? 0.65 : 0.5);
     }
   }
   print_message("step 17: F %.1f [%.1f, %.1f], F-bar %.1f [%.1f, %.1f], total %.1f [%.1f, %.1f]\n",
