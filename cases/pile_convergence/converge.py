@@ -109,6 +109,12 @@ def resistance(rows, depth):
     return sum(near) / len(near) if near and rows[-1][0] >= depth + 0.9 * BAND else math.nan
 
 
+def overlap(contact, results):
+    """Depth of the deepest soil point; of the deepest corner of a domain with corner contact."""
+    key = "contact_overlap_max_m" if contact == "corner" else "largest_overlap_m"
+    return results.get(key, math.nan)
+
+
 def measure(args, contact, resolution, folder):
     """One line of the table."""
     s = json.loads((folder / "summary.json").read_text())
@@ -116,7 +122,7 @@ def measure(args, contact, resolution, folder):
     row = {"contact": contact, "radius_over_cell": resolution, "status": s["status"],
            "points": s["points"], "steps": s["steps"], "wall_s": s["wall_s"],
            "sim_time_s": s["sim_time_s"],
-           "overlap_over_radius": r.get("largest_overlap_m", math.nan) / RADIUS,
+           "overlap_over_radius": overlap(contact, r) / RADIUS,
            "energy_error_over_work": abs(e["balance_error_j"]) / max(abs(e["external_work_j"]), 1)}
     if args.study == "push":
         rows = curve(folder)
