@@ -89,7 +89,7 @@ static void expect(const char *path, pw_status code, const char *text)
 
 static void expect_content(const char *content, pw_status code, const char *text)
 {
-  char path[] = "/tmp/pw_gmsh_XXXXXX";
+  char path[] = "pw_gmsh_XXXXXX";
   int handle = mkstemp(path);
   assert_true(handle >= 0);
   FILE *file = fdopen(handle, "w");

@@ -72,6 +72,12 @@ typedef struct pw_corner {
   pw_real offset_max;        /**< largest part of a gap without force; m */
 } pw_corner;
 
+/** @brief Energy of a spring; J. @param[in] k N/m @param[in] stretch m */
+static inline pw_real pw_spring_energy(pw_real k, pw_real stretch)
+{
+  return 0.5 * k * stretch * stretch;
+}
+
 /** @brief (1), (2): fill c->pair, history of sites that have left. @return PW_OK;
  *  PW_ERR_MEMORY when more sites are in contact than there is room for. */
 pw_status pw_corner_search(pw_corner *c);

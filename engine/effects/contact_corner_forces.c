@@ -6,11 +6,6 @@
 
 #include "engine/assemble.h"
 
-static pw_real energy(pw_real k, pw_real stretch)
-{
-  return 0.5 * k * stretch * stretch;
-}
-
 /* Most force along the surface. */
 static pw_real shear_cap(const pw_contact_corner_param *p, const pw_corner_pair *q)
 {
@@ -33,10 +28,11 @@ static void pull_along(const pw_contact_corner_param *p, const pw_corner_pair *q
   const pw_real k = q->stiffness, old = *slip, cap = shear_cap(p, q), trial = old + q->advance;
   if (fabs(q->relax * trial) * k <= cap) {
     *slip = q->relax * trial;
-    sums->dissipated += energy(before, trial) - energy(k, *slip);
+    sums->dissipated += pw_spring_energy(before, trial) - pw_spring_energy(k, *slip);
   } else {
     *slip = k > 0.0 ? copysign(cap / k, trial) : 0.0;
-    sums->dissipated += energy(before, old) + before * old * q->advance - energy(k, *slip);
+    sums->dissipated +=
+        pw_spring_energy(before, old) + before * old * q->advance - pw_spring_energy(k, *slip);
   }
 }
 
@@ -52,7 +48,8 @@ static void push(pw_corner *c, pw_corner_pair *q, pw_corner_sums *sums)
   for (int k = 0; k < 2; k++) {
     q->force[k] = normal * q->place.n[k] + shear * q->place.t[k];
   }
-  sums->spring += energy(q->stiffness, q->overlap) + energy(q->stiffness, p->contact_slip[at]);
+  sums->spring += pw_spring_energy(q->stiffness, q->overlap) +
+                  pw_spring_energy(q->stiffness, p->contact_slip[at]);
   pw_domain_now d = pw_domain_of(p, q->point, c->surface.line->axi);
   pw_site_scatter(p, &d, q->site, c->sim->mesh.nodes[0], q->force, c->slave_rec);
 }

@@ -34,16 +34,11 @@ static bool block_near(const pw_corner *c, pw_idx block)
          pw_mesh_node_y(m, k[3] * m->nodes[0]) >= box[2];
 }
 
-static pw_real energy(pw_real k, pw_real stretch)
-{
-  return 0.5 * k * stretch * stretch;
-}
-
 /* The contact of a site has ended: its tangential spring lets go. */
 static void release(pw_corner *c, pw_off at, pw_real area, pw_corner_sums *sums)
 {
   pw_points *p = &c->sim->points;
-  sums->dissipated += energy(p->contact_stiffness[at] * area, p->contact_slip[at]);
+  sums->dissipated += pw_spring_energy(p->contact_stiffness[at] * area, p->contact_slip[at]);
   p->contact_arc[at] = -1.0;
   p->contact_slip[at] = p->contact_offset[at] = p->contact_stiffness[at] = 0.0;
 }
@@ -192,7 +187,8 @@ static void set_springs(const pw_corner *c, pw_corner_pair *q, const pw_domain_n
     const pw_real kept = pw_min(pw_max(held + jump, pw_min(held, -ABSORBED * slack / LEFT)), 0.0);
     q->overlap = q->relax * (next_offset(q, kept, slack) - gap);
     offset = gap + q->overlap;
-    sums->dissipated += energy(old * q->area, before) - energy(q->stiffness, q->overlap);
+    sums->dissipated +=
+        pw_spring_energy(old * q->area, before) - pw_spring_energy(q->stiffness, q->overlap);
   }
   p->contact_offset[at] = offset;
   sums->offset = pw_max(sums->offset, -offset);
