@@ -3,7 +3,7 @@
 
 #include <math.h>
 
-#include "engine/effects/contact_corner_domain.h"
+#include "engine/domain_sites.h"
 
 /* Shorten the half diagonals r1 + r2 and r1 - r2 to at most limit; true when one was longer. */
 static bool limit_diagonals(pw_real r[4], pw_real limit)

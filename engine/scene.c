@@ -81,6 +81,8 @@ const pw_key pw_scene_keys_output[] = {
    "write ParaView files"},
   {"pictures", PW_KEY_BOOL, AT(output.pictures), 0, 0, "true", NULL, NULL,
    "draw pictures"},
+  {"picture_cell_mean", PW_KEY_BOOL, AT(output.picture_cell_mean), 0, 0, "false", NULL, NULL,
+   "colour points by the mean of their cell: leaves out what alternates within cells"},
   {"picture_times_s", PW_KEY_REALS, AT(output.picture_times_s), 0, 1e12, "[]", NULL, NULL,
    "times of pictures besides the end"},
   {"picture_x_m", PW_KEY_PAIR, AT(output.picture_x_m), -FAR_M, FAR_M, "[0, 0]", NULL, NULL,

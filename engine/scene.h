@@ -94,7 +94,7 @@ typedef struct pw_scene {
   } method;
   struct {
     pw_real history_every_s, snapshot_every_s, checkpoint_every_s;
-    bool paraview, pictures;
+    bool paraview, pictures, picture_cell_mean;
     pw_reals picture_times_s;               /**< besides the end */
     pw_real picture_x_m[2], picture_y_m[2]; /**< window; equal ends: the whole grid */
   } output;

@@ -100,4 +100,7 @@ void pw_sim_schedule_text(const pw_sim *sim, char *text, size_t size);
  *  @return points written; 0 when there is no such polyline. */
 int pw_sim_outline(const pw_sim *sim, int i, pw_real *xy, int max);
 
+/** @brief As pw_sim_outline(), of body @p b where it is a structure; 0 for a body of points. */
+int pw_sim_structure_outline(const pw_sim *sim, int b, pw_real *xy, int max);
+
 #endif /* PW_ENGINE_SIM_H */

@@ -297,6 +297,11 @@ pw_status pw_sim_archive(pw_sim *sim, pw_archive *ar)
   return PW_OK;
 }
 
+int pw_sim_structure_outline(const pw_sim *sim, int b, pw_real *xy, int max)
+{
+  return sim->structure_of[b] ? pw_structure_outline(sim->structure_of[b], xy, max) : 0;
+}
+
 int pw_sim_outline(const pw_sim *sim, int i, pw_real *xy, int max)
 {
   if (pw_sim_effect_ctx(sim, "contact_penalty")) {

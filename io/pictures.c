@@ -46,6 +46,7 @@ struct picture {
   pw_real x[2], y[2];        /* window; m */
   int width, height, px, py; /* canvas and plot area; pixels */
   pw_real range[2];          /* colour range of these data; SI */
+  pw_real *value;            /* [n] of the points */
   pw_real *work;             /* [n] values, then outlines */
 };
 
@@ -164,6 +165,42 @@ static void choose_size(picture *c)
   c->height = c->py + TOP + BOTTOM + (bar_below(c) ? BELOW : 0);
 }
 
+/* ---- values ---- */
+
+/* Every point gets the mean, by volume, of the coloured points of its cell. */
+static pw_status share_in_cells(picture *c)
+{
+  const pw_mesh *m = pw_sim_mesh(c->sim);
+  pw_real *sum = NULL; /* [2 nelem] */
+  PW_TRY(pw_mem_alloc("pictures: cells", 2 * (pw_off)m->nelem, sizeof *sum, &sum));
+  for (int pass = 0; pass < 2; pass++) {
+    for (pw_idx i = 0; i < c->p->n; i++) {
+      const pw_real x[2] = {c->p->x[i], c->p->x[c->p->ld + i]};
+      const pw_idx cell = pw_mesh_locate(m, x);
+      if (cell < 0 || !coloured(c, i) || !isfinite(c->value[i])) {
+        continue;
+      }
+      pw_real *at = sum + 2 * (pw_off)cell;
+      if (pass == 0) {
+        at[0] += c->p->vol[i] * c->value[i];
+        at[1] += c->p->vol[i];
+      } else {
+        c->value[i] = at[0] / at[1];
+      }
+    }
+  }
+  pw_mem_free(&sum);
+  return PW_OK;
+}
+
+static pw_status find_values(picture *c)
+{
+  for (pw_idx i = 0; i < c->p->n; i++) {
+    c->value[i] = c->what->value(c, i);
+  }
+  return c->scene->output.picture_cell_mean ? share_in_cells(c) : PW_OK;
+}
+
 /* ---- colour range ---- */
 
 static int ascending(const void *a, const void *b)
@@ -180,7 +217,7 @@ static void choose_range(picture *c)
   size_t n = 0;
   for (pw_idx i = 0; i < c->p->n; i++) {
     corners(c, i, xy);
-    const pw_real v = c->what->value(c, i);
+    const pw_real v = c->value[i];
     if (coloured(c, i) && isfinite(v) && in_window(c, xy)) {
       c->work[n++] = v;
     }
@@ -200,7 +237,7 @@ static void print_data(const picture *c, FILE *f, bool colour)
   pw_real xy[8];
   fprintf(f, "$%s << END\n", colour ? "field" : "other");
   for (pw_idx i = 0; i < c->p->n; i++) {
-    const pw_real v = colour ? c->what->value(c, i) : 0.0;
+    const pw_real v = colour ? c->value[i] : 0.0;
     corners(c, i, xy);
     if (coloured(c, i) != colour || !isfinite(v) || !in_window(c, xy)) {
       continue;
@@ -213,6 +250,27 @@ static void print_data(const picture *c, FILE *f, bool colour)
   fprintf(f, "END\n");
 }
 
+static void print_line(const picture *c, FILE *f, int count)
+{
+  for (int k = 0; k < count; k++) {
+    fprintf(f, "%.6g %.6g\n", c->work[2 * k], c->work[2 * k + 1]);
+  }
+  fprintf(f, "\n");
+}
+
+static int print_structures(const picture *c, FILE *f)
+{
+  int n = 0;
+  fprintf(f, "$structure << END\n");
+  for (int b = 0; b < c->scene->nbody; b++) {
+    int count = pw_sim_structure_outline(c->sim, b, c->work, OUTLINE_POINTS);
+    n += count > 0;
+    print_line(c, f, count);
+  }
+  fprintf(f, "END\n");
+  return n;
+}
+
 static int print_outlines(const picture *c, FILE *f)
 {
   int n = 0;
@@ -222,10 +280,7 @@ static int print_outlines(const picture *c, FILE *f)
     if (count <= 0) {
       break;
     }
-    for (int k = 0; k < count; k++) {
-      fprintf(f, "%.6g %.6g\n", c->work[2 * k], c->work[2 * k + 1]);
-    }
-    fprintf(f, "\n");
+    print_line(c, f, count);
   }
   fprintf(f, "END\n");
   return n;
@@ -275,6 +330,11 @@ static void print_frame(const picture *c, pw_plot *plot)
   pw_plot_text(plot, c->scene->title);
   fprintf(f, " at screen %g,%g left font ',13' textcolor '#606060' noenhanced\n", LEFT / w,
           (h - 62.0) / h);
+  if (c->scene->output.picture_cell_mean) {
+    fprintf(f,
+            "set label 4 'means of cells' at screen %g,%g right font ',13' textcolor '#606060'\n",
+            (w - 12.0) / w, 14.0 / h);
+  }
 }
 
 static void print_script(const picture *c, pw_plot *plot)
@@ -285,10 +345,13 @@ static void print_script(const picture *c, pw_plot *plot)
   print_bar(c, f);
   print_data(c, f, true);
   print_data(c, f, false);
-  int outlines = print_outlines(c, f);
+  int structures = print_structures(c, f), outlines = print_outlines(c, f);
   fprintf(f, "set style fill solid noborder\n");
   fprintf(f, "plot $field using 1:2:($3*SCALE) with filledcurves closed fillcolor palette, "
              "$other using 1:2 with filledcurves closed fillcolor rgb '#b8b8b8', ");
+  if (structures > 0) {
+    fprintf(f, "$structure using 1:2 with filledcurves closed fillcolor rgb '#b8b8b8', ");
+  }
   if (outlines > 0) {
     fprintf(f, "$outline using 1:2 with lines linecolor rgb 'black' linewidth 1.4, ");
   }
@@ -300,6 +363,7 @@ static pw_status draw(picture *c, const char *folder, const quantity *what)
   char name[128];
   pw_plot plot = {.script = NULL};
   c->what = what;
+  PW_TRY(find_values(c));
   choose_range(c);
   snprintf(name, sizeof name, "%s_t%06.3fs.png", what->file, pw_sim_time(c->sim));
   pw_series_picture p = {.own = {c->range[0], c->range[1]}, .width = c->width, .height = c->height};
@@ -343,10 +407,12 @@ pw_status pw_pictures_fields(const char *folder, const pw_sim *sim)
   pw_off room = c.p->n > 2 * OUTLINE_POINTS ? c.p->n : 2 * OUTLINE_POINTS;
   PW_TRY(pw_make_folder(folder));
   PW_TRY(pw_mem_alloc("pictures", room, sizeof *c.work, &c.work));
+  pw_status status = pw_mem_alloc("pictures: values", c.p->n, sizeof *c.value, &c.value);
   c.soil_only = has_soil(c.scene);
   choose_window(&c);
   choose_size(&c);
-  pw_status status = draw_all(&c, folder);
+  status = status == PW_OK ? draw_all(&c, folder) : status;
+  pw_mem_free(&c.value);
   pw_mem_free(&c.work);
   return status;
 }

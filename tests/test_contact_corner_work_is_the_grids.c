@@ -4,7 +4,7 @@
  * of the surface add up to it. Reference: virtual work with the engine's own motion of domains;
  * integrals by hand. */
 #include "engine/assemble.h"
-#include "engine/effects/contact_corner_domain.h"
+#include "engine/domain_sites.h"
 #include "engine/update.h"
 #include "tests/engine_helpers.h"
 

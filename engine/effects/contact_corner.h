@@ -12,14 +12,14 @@
 #ifndef PW_EFFECTS_CONTACT_CORNER_H
 #define PW_EFFECTS_CONTACT_CORNER_H
 
+#include "engine/domain_sites.h"
 #include "engine/effects/contact.h"
-#include "engine/effects/contact_corner_domain.h"
 #include "engine/effects/contact_corner_surface.h"
 
 /** A site in contact in this step. */
 typedef struct pw_corner_pair {
   pw_idx point;
-  int site;   /**< corner or edge's middle: contact_corner_domain.h */
+  int site;   /**< corner or edge's middle: engine/domain_sites.h */
   bool fresh; /**< was not in contact in the last step */
   pw_round_place place;
   pw_real overlap;   /**< what of the gap makes force, >= 0; m */

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /**
- * @file engine/effects/contact_corner_domain.h
+ * @file engine/domain_sites.h
  * @brief Corners and edges' middles of a CPDI domain: place, motion, mass, share of the surface
  *        (layer 3).
  *
@@ -15,8 +15,8 @@
  * field). A force on the site is handed to the four corners' grid nodes with the same weights:
  * then force times motion is the work of the grid's nodes.
  */
-#ifndef PW_EFFECTS_CONTACT_CORNER_DOMAIN_H
-#define PW_EFFECTS_CONTACT_CORNER_DOMAIN_H
+#ifndef PW_ENGINE_DOMAIN_SITES_H
+#define PW_ENGINE_DOMAIN_SITES_H
 
 #include "engine/core/key.h"
 #include "engine/nodes.h"
@@ -168,4 +168,4 @@ static inline void pw_site_velocity(const pw_points *p, const pw_domain_now *d, 
   }
 }
 
-#endif /* PW_EFFECTS_CONTACT_CORNER_DOMAIN_H */
+#endif /* PW_ENGINE_DOMAIN_SITES_H */
