@@ -7,6 +7,8 @@ set -e
 build=${1:?folder of the build} pairs=${2:-9} steps=${3:-300}
 source_dir=$(cd "$(dirname "$0")/.." && pwd)
 export OMP_PROC_BIND=${OMP_PROC_BIND:-false}
+# As the program itself does: engine/main_bind.c.
+export GOMP_SPINCOUNT=${GOMP_SPINCOUNT:-3000}
 
 speed() { "$build/bench_step" "$1" "$steps" | sed -n 's/.*: \([0-9.]*\) M point-steps.*/\1/p'; }
 

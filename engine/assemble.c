@@ -4,56 +4,70 @@
 #include <omp.h>
 
 /* Without a division: equal numbers of blocks. */
-static void run_equal(const pw_blocks *b, int threads, pw_block_fn fn, void *ctx)
+static void run_equal(const pw_blocks *b, pw_idx first, pw_idx last, const pw_pass *pass, void *ctx)
 {
-#pragma omp parallel default(none) shared(b, fn, ctx) num_threads(threads)
-  {
-    for (pw_idx c = 0; c < b->ncolour; c++) {
-      /* The implicit barrier at the end of the loop separates the colours. */
+  for (pw_idx c = first; c < last; c++) {
+    const bool all = c == b->ncolour;
+    const pw_idx start = all ? 0 : b->colour_start[c];
+    const pw_idx end = all ? b->nblock : b->colour_start[c + 1];
+    /* The implicit barrier at the end of the loop separates the colours. */
 #pragma omp for schedule(static)
-      for (pw_idx k = b->colour_start[c]; k < b->colour_start[c + 1]; k++) {
-        fn(ctx, b->colour_block[k]);
-      }
+    for (pw_idx k = start; k < end; k++) {
+      pass->block(ctx, all ? k : b->colour_block[k]);
     }
   }
 }
 
-/* Lists [first, last) of the division, with a barrier between them. */
-static void run_shared(const pw_blocks *b, int threads, const pw_idx *list, pw_block_fn fn,
+/* Lists [first, last) of the division: the thread's own blocks, then those for whoever is free.
+ * The barrier at the end of the loop separates the colours. */
+static void run_shared(const pw_blocks *b, pw_idx first, pw_idx last, const pw_pass *pass,
                        void *ctx)
 {
-#pragma omp parallel default(none) shared(b, list, fn, ctx) num_threads(threads)
+  /* The runtime may give fewer threads than asked for: then some run several shares. */
+  const int own = omp_get_thread_num(), step = omp_get_num_threads(), nt = b->nthread;
+  for (pw_idx c = first; c < last; c++) {
+    const pw_idx *start = b->share_start + (pw_off)c * (nt + 1);
+    for (int t = own; t < nt; t += step) {
+      for (pw_idx k = start[t]; k < start[t + 1]; k++) {
+        pass->block(ctx, b->share_block[k]);
+      }
+    }
+    const pw_idx tail = start[nt], end = start[nt + 1];
+#pragma omp for schedule(dynamic, 1)
+    for (pw_idx k = tail; k < end; k++) {
+      pass->block(ctx, b->share_block[k]);
+    }
+  }
+}
+
+void pw_assemble_pass(const pw_blocks *b, int threads, const pw_pass *pass, void *ctx)
+{
+  const pw_idx first = pass->any_order ? b->ncolour : 0;
+  const pw_idx last = pass->any_order ? b->ncolour + 1 : b->ncolour;
+#pragma omp parallel default(none) shared(b, first, last, pass, ctx) num_threads(threads)
   {
-    /* The runtime may give fewer threads than asked for: then some run several shares. */
-    const int own = omp_get_thread_num(), step = omp_get_num_threads();
-    for (pw_idx c = list[0]; c < list[1]; c++) {
-      for (int t = own; t < b->nthread; t += step) {
-        const pw_idx *start = b->share_start + (pw_off)c * b->nthread + t;
-        for (pw_idx k = start[0]; k < start[1]; k++) {
-          fn(ctx, b->share_block[k]);
-        }
-      }
-      if (c + 1 < list[1]) {
+    const int part = omp_get_thread_num(), parts = omp_get_num_threads();
+    if (pass->before) {
+      pass->before(ctx, part, parts);
 #pragma omp barrier
-      }
+    }
+    if (b->nthread > 0) {
+      run_shared(b, first, last, pass, ctx);
+    } else {
+      run_equal(b, first, last, pass, ctx);
+    }
+    if (pass->after) {
+      pass->after(ctx, part, parts);
     }
   }
 }
 
 void pw_assemble_coloured(const pw_blocks *b, int threads, pw_block_fn fn, void *ctx)
 {
-  if (b->nthread > 0) {
-    run_shared(b, threads, (const pw_idx[]){0, b->ncolour}, fn, ctx);
-  } else {
-    run_equal(b, threads, fn, ctx);
-  }
+  pw_assemble_pass(b, threads, &(pw_pass){.block = fn}, ctx);
 }
 
 void pw_for_blocks(const pw_blocks *b, int threads, pw_block_fn fn, void *ctx)
 {
-  if (b->nthread > 0) {
-    run_shared(b, threads, (const pw_idx[]){b->ncolour, b->ncolour + 1}, fn, ctx);
-  } else {
-    run_equal(b, threads, fn, ctx);
-  }
+  pw_assemble_pass(b, threads, &(pw_pass){.block = fn, .any_order = true}, ctx);
 }

@@ -65,15 +65,26 @@ void pw_nodes_use(pw_nodes *nodes, int f, pw_idx first, pw_idx n)
   }
 }
 
-void pw_nodes_clear(pw_nodes *nodes)
+/* Groups in use [*first, *last) of one part. */
+static void part_of(const pw_nodes *nodes, int part, int parts, pw_idx *first, pw_idx *last)
 {
-  const pw_idx groups = nodes->nused;
-#pragma omp parallel for default(none) shared(nodes, groups) schedule(static)
-  for (pw_idx i = 0; i < groups; i++) {
+  *first = (pw_idx)((pw_off)nodes->nused * part / parts);
+  *last = (pw_idx)((pw_off)nodes->nused * (part + 1) / parts);
+}
+
+void pw_nodes_clear_part(pw_nodes *nodes, int part, int parts)
+{
+  pw_idx i, end;
+  for (part_of(nodes, part, parts, &i, &end); i < end; i++) {
     pw_off k, last;
     pw_nodes_group(nodes, i, &k, &last);
     memset(nodes->rec + k * PW_NODE, 0, (size_t)(last - k) * PW_NODE * sizeof(pw_real));
   }
+}
+
+void pw_nodes_clear(pw_nodes *nodes)
+{
+  pw_nodes_clear_part(nodes, 0, 1);
 }
 
 void pw_nodes_momentum(pw_nodes *nodes, pw_real dt, pw_real cut_off)
@@ -96,11 +107,10 @@ void pw_nodes_momentum(pw_nodes *nodes, pw_real dt, pw_real cut_off)
   }
 }
 
-void pw_nodes_increment(pw_nodes *nodes)
+void pw_nodes_increment_part(pw_nodes *nodes, int part, int parts)
 {
-  const pw_idx groups = nodes->nused;
-#pragma omp parallel for default(none) shared(nodes, groups) schedule(static)
-  for (pw_idx i = 0; i < groups; i++) {
+  pw_idx i, end;
+  for (part_of(nodes, part, parts, &i, &end); i < end; i++) {
     pw_off k, last;
     for (pw_nodes_group(nodes, i, &k, &last); k < last; k++) {
       pw_real *r = nodes->rec + k * PW_NODE;
@@ -110,11 +120,10 @@ void pw_nodes_increment(pw_nodes *nodes)
   }
 }
 
-void pw_nodes_remap(pw_nodes *nodes)
+void pw_nodes_remap_part(pw_nodes *nodes, int part, int parts)
 {
-  const pw_idx groups = nodes->nused;
-#pragma omp parallel for default(none) shared(nodes, groups) schedule(static)
-  for (pw_idx i = 0; i < groups; i++) {
+  pw_idx i, end;
+  for (part_of(nodes, part, parts, &i, &end); i < end; i++) {
     pw_off k, last;
     for (pw_nodes_group(nodes, i, &k, &last); k < last; k++) {
       pw_real *r = nodes->rec + k * PW_NODE;

@@ -77,8 +77,11 @@ static inline void pw_nodes_group(const pw_nodes *nodes, pw_idx i, pw_off *first
   *last = *first + PW_NODE_GROUP < nodes->count ? *first + PW_NODE_GROUP : nodes->count;
 }
 
-/** @brief Set every record in use to zero; threaded. */
+/** @brief Set every record in use to zero. */
 void pw_nodes_clear(pw_nodes *nodes);
+
+/** @brief The same for one of @p parts of the records in use. */
+void pw_nodes_clear_part(pw_nodes *nodes, int part, int parts);
 
 /**
  * @brief Momentum to velocity, forces to the step's velocity: v(n) = p/m, v(n+1) = v(n) + dt f/m.
@@ -86,10 +89,11 @@ void pw_nodes_clear(pw_nodes *nodes);
  */
 void pw_nodes_momentum(pw_nodes *nodes, pw_real dt, pw_real cut_off);
 
-/** @brief After the constraints: slot FORCE becomes v(n+1) - v(n), what the points receive. */
-void pw_nodes_increment(pw_nodes *nodes);
+/** @brief After the constraints: slot FORCE becomes v(n+1) - v(n), what the points receive.
+ *  One of @p parts of the records in use. */
+void pw_nodes_increment_part(pw_nodes *nodes, int part, int parts);
 
-/** @brief Remapped momentum to velocity (MUSL). */
-void pw_nodes_remap(pw_nodes *nodes);
+/** @brief Remapped momentum to velocity (MUSL); one of @p parts of the records in use. */
+void pw_nodes_remap_part(pw_nodes *nodes, int part, int parts);
 
 #endif /* PW_ENGINE_NODES_H */

@@ -218,8 +218,9 @@ static pw_status create_blocks(pw_sim *sim, pw_real reach_cells)
    * drift before they must be sorted again. */
   pw_idx reach = pw_domain_reach(m, reach_cells);
   pw_idx per_block = sim->scene.method.block_elements;
-  per_block = per_block > 0 ? per_block : pw_blocks_choose_size(m->nelem, sim->threads);
-  pw_status status = pw_blocks_create(m->cells, weight, per_block, reach, sim->nbody, &sim->blocks);
+  pw_status status =
+      per_block > 0 ? pw_blocks_create(m->cells, weight, per_block, reach, sim->nbody, &sim->blocks)
+                    : pw_blocks_create_even(m->cells, weight, reach, sim->nbody, &sim->blocks);
   pw_mem_free(&weight);
   PW_TRY(status);
   PW_TRY(pw_share_create(&sim->blocks, sim->threads));

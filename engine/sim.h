@@ -47,6 +47,8 @@ typedef struct pw_report {
   pw_real stage_wall_s[PW_TIMER_COUNT];
   pw_real wall_s; /**< spent in pw_sim_step */
   pw_off bytes_per_point;
+  pw_real bound_scatter, bound_gather; /**< most that the threads can be faster than one, by the
+                                            division of the blocks (partition/share.h) */
   pw_energy energy;
   pw_off sorts, domains_limited, domains_rebuilt, domains_reshaped, vertices_clamped;
   pw_material_counts material;

@@ -10,6 +10,7 @@
 #include "engine/ranges.h"
 #include "engine/structure_sim.h"
 #include "engine/update.h"
+#include "partition/share.h"
 
 void pw_body_centre(const pw_sim *sim, int body, pw_real *out)
 {
@@ -76,6 +77,7 @@ void pw_sim_report(const pw_sim *sim, pw_report *out)
                      .vertices_clamped = sim->clamped,
                      .material = sim->material};
   memcpy(out->stage_wall_s, sim->stage_wall, sizeof out->stage_wall_s);
+  pw_share_bound(&sim->blocks, sim->threads, &out->bound_scatter, &out->bound_gather);
 }
 
 static void put_body(const pw_sim *sim, int b, pw_record *row)

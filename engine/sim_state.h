@@ -107,6 +107,12 @@ struct pw_sim {
 /** @brief Run the hooks of @p stage in order. @return the first status that is not PW_OK. */
 pw_status pw_schedule_run(pw_sim *sim, pw_stage stage);
 
+/** @brief Hooks of @p stage. */
+static inline int pw_schedule_count(const pw_sim *sim, pw_stage stage)
+{
+  return sim->schedule.start[stage + 1] - sim->schedule.start[stage];
+}
+
 /** @brief Context of the first effect of that name in the scene, or NULL. */
 void *pw_sim_effect_ctx(const pw_sim *sim, const char *name);
 

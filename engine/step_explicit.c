@@ -57,13 +57,33 @@ static void force_stress(pw_sim *sim)
   }
 }
 
+/* Loops over the nodes run inside the parallel regions of the scatters before or after them. */
+static void clear_nodes(void *ctx, int part, int parts)
+{
+  pw_nodes_clear_part(&((pw_sim *)ctx)->nodes, part, parts);
+}
+
+static void increment_nodes(void *ctx, int part, int parts)
+{
+  pw_nodes_increment_part(&((pw_sim *)ctx)->nodes, part, parts);
+}
+
+static void remap_nodes(void *ctx, int part, int parts)
+{
+  pw_nodes_remap_part(&((pw_sim *)ctx)->nodes, part, parts);
+}
+
+/* Scatter onto cleared nodes. */
+static void scatter(pw_sim *sim, pw_block_fn block)
+{
+  force_stress(sim);
+  pw_assemble_pass(&sim->blocks, sim->threads, &(pw_pass){clear_nodes, block, NULL, false}, sim);
+}
+
 /* Points to grid, forces, new nodal velocities under all constraints. */
 static pw_status grid_velocity(pw_sim *sim, double *clock)
 {
-  pw_nodes_clear(&sim->nodes);
-  lap(sim, PW_TIMER_NODES, clock);
-  force_stress(sim);
-  pw_assemble_coloured(&sim->blocks, sim->threads, pw_block_p2g, sim);
+  scatter(sim, pw_block_p2g);
   lap(sim, PW_TIMER_P2G, clock);
   PW_TRY(pw_schedule_run(sim, PW_STAGE_P2G));
   PW_TRY(pw_schedule_run(sim, PW_STAGE_NODE_FORCE));
@@ -73,8 +93,6 @@ static pw_status grid_velocity(pw_sim *sim, double *clock)
   lap(sim, PW_TIMER_NODES, clock);
   PW_TRY(constrain(sim, PW_STAGE_CONSTRAINT, PW_NODE_VEL));
   lap(sim, PW_TIMER_EFFECTS, clock);
-  pw_nodes_increment(&sim->nodes);
-  lap(sim, PW_TIMER_NODES, clock);
   return PW_OK;
 }
 
@@ -91,9 +109,7 @@ static void update_points(pw_sim *sim, pw_update_pass *pass)
 /* USF: stress from the velocities at the start of the step. */
 static pw_status stress_first(pw_sim *sim, double *clock)
 {
-  pw_nodes_clear(&sim->nodes);
-  force_stress(sim);
-  pw_assemble_coloured(&sim->blocks, sim->threads, pw_block_p2g_momentum, sim);
+  scatter(sim, pw_block_p2g_momentum);
   PW_TRY(pw_schedule_run(sim, PW_STAGE_P2G));
   pw_nodes_momentum(&sim->nodes, 0.0, sim->mass_cut_off);
   PW_TRY(constrain(sim, PW_STAGE_REMAP, PW_NODE_VEL));
@@ -105,15 +121,20 @@ static pw_status stress_first(pw_sim *sim, double *clock)
   return sim->sort_needed ? pw_update_sort(sim) : PW_OK; /* domains have changed: mind the halo */
 }
 
-/* MUSL: the updated points' momentum back on the grid. */
+/* MUSL: the points take their increments of velocity, and their momentum goes back on the grid. */
 static pw_status remap_velocity(pw_sim *sim, double *clock)
 {
-  pw_assemble_coloured(&sim->blocks, sim->threads, pw_block_velocity_remap, sim);
+  const bool alone = pw_schedule_count(sim, PW_STAGE_REMAP_P2G) == 0;
+  const pw_pass pass = {increment_nodes, pw_block_velocity_remap, alone ? remap_nodes : NULL,
+                        false};
+  pw_assemble_pass(&sim->blocks, sim->threads, &pass, sim);
   lap(sim, PW_TIMER_REMAP, clock);
-  PW_TRY(pw_schedule_run(sim, PW_STAGE_REMAP_P2G));
-  lap(sim, PW_TIMER_EFFECTS, clock);
-  pw_nodes_remap(&sim->nodes);
-  lap(sim, PW_TIMER_NODES, clock);
+  if (!alone) {
+    PW_TRY(pw_schedule_run(sim, PW_STAGE_REMAP_P2G));
+    lap(sim, PW_TIMER_EFFECTS, clock);
+    remap_nodes(sim, 0, 1);
+    lap(sim, PW_TIMER_NODES, clock);
+  }
   PW_TRY(constrain(sim, PW_STAGE_REMAP, PW_NODE_REMAP));
   lap(sim, PW_TIMER_EFFECTS, clock);
   return PW_OK;
@@ -144,7 +165,8 @@ pw_status pw_step_explicit(pw_sim *sim)
     PW_TRY(remap_velocity(sim, &clock));
     pass.slot = PW_NODE_REMAP;
   } else {
-    pw_for_blocks(&sim->blocks, sim->threads, pw_block_velocity, sim);
+    const pw_pass velocity = {increment_nodes, pw_block_velocity, NULL, true};
+    pw_assemble_pass(&sim->blocks, sim->threads, &velocity, sim);
     lap(sim, PW_TIMER_REMAP, &clock);
   }
   update_points(sim, &pass);

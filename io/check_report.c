@@ -120,7 +120,14 @@ static void print_sizes(const pw_report *r, FILE *out)
   fprintf(out, "nodes        %d\n", r->nodes);
   fprintf(out, "elements     %d\n", r->elements);
   fprintf(out, "blocks       %d, %d colours\n", r->blocks, r->colours);
-  fprintf(out, "threads      %d\n", r->threads);
+  fprintf(out, "threads      %d", r->threads);
+  if (r->threads > 1) {
+    fprintf(out,
+            "; the division of the blocks allows %.2f times the speed of one in scatters, %.2f "
+            "in gathers and stress",
+            r->bound_scatter, r->bound_gather);
+  }
+  fputc('\n', out);
 }
 
 /* Wall clock of a step on an idle machine, without making one: evaluating the stress of all points

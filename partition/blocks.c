@@ -16,6 +16,7 @@
 #include "partition/colour.h"
 #include "partition/graph.h"
 #include "partition/order.h"
+#include "partition/share.h"
 
 #include <string.h>
 
@@ -38,14 +39,7 @@ void pw_blocks_destroy(pw_blocks *b)
   pw_mem_free(&b->colour_start);
   pw_mem_free(&b->colour_block);
   pw_mem_free(&b->point_start);
-  pw_mem_free(&b->share_start);
-  pw_mem_free(&b->share_block);
-  pw_mem_free(&b->share_size);
-  pw_mem_free(&b->share_work);
-  pw_mem_free(&b->share_home);
-  pw_mem_free(&b->share_owner);
-  pw_mem_free(&b->share_order);
-  pw_mem_free(&b->share_load);
+  pw_share_destroy(b);
   memset(b, 0, sizeof *b);
 }
 

@@ -5,12 +5,15 @@
 
 #include "engine/core/mem.h"
 
+/* The smallest blocks of a list, up to this part of its work, belong to nobody beforehand. */
+static const pw_real TAIL = 0.25;
+
 pw_status pw_share_create(pw_blocks *b, int threads)
 {
   b->nthread = 0;
   b->share_room = threads > 1 ? threads : 1;
   const pw_off lists = (pw_off)b->ncolour + 1;
-  PW_TRY(pw_mem_alloc("shares: offsets", lists * b->share_room + 1, sizeof *b->share_start,
+  PW_TRY(pw_mem_alloc("shares: offsets", lists * (b->share_room + 1) + 1, sizeof *b->share_start,
                       &b->share_start));
   PW_TRY(pw_mem_alloc("shares: blocks", 2 * (pw_off)b->nblock, sizeof *b->share_block,
                       &b->share_block));
@@ -20,6 +23,19 @@ pw_status pw_share_create(pw_blocks *b, int threads)
   PW_TRY(pw_mem_alloc("shares: owners", b->nblock, sizeof *b->share_owner, &b->share_owner));
   PW_TRY(pw_mem_alloc("shares: order", b->nblock, sizeof *b->share_order, &b->share_order));
   return pw_mem_alloc("shares: loads", b->share_room, sizeof *b->share_load, &b->share_load);
+}
+
+void pw_share_destroy(pw_blocks *b)
+{
+  pw_mem_free(&b->share_start);
+  pw_mem_free(&b->share_block);
+  pw_mem_free(&b->share_size);
+  pw_mem_free(&b->share_work);
+  pw_mem_free(&b->share_home);
+  pw_mem_free(&b->share_owner);
+  pw_mem_free(&b->share_order);
+  pw_mem_free(&b->share_load);
+  b->nthread = b->share_room = 0;
 }
 
 /* Blocks in their order (rows of the grid, upwards) cut into parts of equal work. */
@@ -65,23 +81,34 @@ static pw_idx least(const pw_off *sum, pw_idx n)
   return best;
 }
 
-/* Owners of a list of blocks (NULL: all), then the shares, each in the order of the list, appended
- * to share_block; start is [share_room]. Returns the end of the last share. */
-static pw_idx divide(pw_blocks *b, const pw_idx *list, pw_idx n, const pw_off *load, pw_idx *start,
-                     pw_idx at)
+/* Owner of each of the first blocks in falling order; returns how many. */
+static pw_idx give_out(pw_blocks *b, pw_idx held, const pw_off *load)
 {
-  const pw_idx nt = b->share_room, held = order_list(b, list, n, load);
-  pw_off *sum = b->share_load, all = 0;
+  const pw_idx nt = b->share_room;
+  pw_off *sum = b->share_load, all = 0, given = 0;
+  pw_idx i = 0;
   memset(sum, 0, (size_t)nt * sizeof *sum);
-  for (pw_idx i = 0; i < held; i++) {
-    all += load[b->share_order[i]];
+  for (pw_idx l = 0; l < held; l++) {
+    all += load[b->share_order[l]];
   }
-  for (pw_idx i = 0; i < held; i++) {
+  const pw_off most = nt > 1 ? all - (pw_off)(TAIL * (pw_real)all) : all;
+  for (; i < held && given < most; i++) {
     pw_idx k = b->share_order[i], t = b->share_home[k];
     t = (sum[t] + load[k]) * nt <= all ? t : least(sum, nt);
     b->share_owner[k] = t;
     sum[t] += load[k];
+    given += load[k];
   }
+  return i;
+}
+
+/* Shares of a list of blocks (NULL: all), each in the order of the list, then its tail in falling
+ * order, appended to share_block; start is [share_room + 1]. Returns the end of the tail. */
+static pw_idx divide(pw_blocks *b, const pw_idx *list, pw_idx n, const pw_off *load, pw_idx *start,
+                     pw_idx at)
+{
+  const pw_idx nt = b->share_room, held = order_list(b, list, n, load);
+  const pw_idx given = give_out(b, held, load);
   for (pw_idx t = 0; t < nt; t++) {
     start[t] = at;
     for (pw_idx l = 0; l < n; l++) {
@@ -91,32 +118,47 @@ static pw_idx divide(pw_blocks *b, const pw_idx *list, pw_idx n, const pw_off *l
       }
     }
   }
+  start[nt] = at;
+  for (pw_idx i = given; i < held; i++) {
+    b->share_block[at++] = b->share_order[i];
+  }
   return at;
 }
 
 void pw_share_balance(pw_blocks *b)
 {
-  const pw_idx nt = b->share_room;
+  const pw_idx row = b->share_room + 1;
   pw_idx at = 0;
   set_homes(b);
   for (pw_idx c = 0; c < b->ncolour; c++) {
     const pw_idx first = b->colour_start[c], n = b->colour_start[c + 1] - first;
-    at = divide(b, b->colour_block + first, n, b->share_size, b->share_start + (pw_off)c * nt, at);
+    at = divide(b, b->colour_block + first, n, b->share_size, b->share_start + (pw_off)c * row, at);
   }
-  at = divide(b, NULL, b->nblock, b->share_work, b->share_start + (pw_off)b->ncolour * nt, at);
-  b->share_start[((pw_off)b->ncolour + 1) * nt] = at;
+  at = divide(b, NULL, b->nblock, b->share_work, b->share_start + (pw_off)b->ncolour * row, at);
+  b->share_start[((pw_off)b->ncolour + 1) * row] = at;
   b->nthread = b->share_room;
 }
 
-/* What thread t runs of list c: a colour, or all blocks (c = ncolour). */
-static pw_off share_load(const pw_blocks *b, pw_idx c, const pw_off *load, int t)
+/* Longest and sum of what the threads run of list c, a colour or all blocks (c = ncolour), when
+ * each block of the tail goes to the thread that is free first. */
+static pw_off share_loads(const pw_blocks *b, pw_idx c, const pw_off *load, pw_off *all)
 {
-  const pw_idx *start = b->share_start + (pw_off)c * b->nthread + t;
-  pw_off sum = 0;
-  for (pw_idx k = start[0]; k < start[1]; k++) {
-    sum += load[b->share_block[k]];
+  const pw_idx nt = b->nthread, *start = b->share_start + (pw_off)c * (nt + 1);
+  pw_off *sum = b->share_load, longest = 0;
+  for (pw_idx t = 0; t < nt; t++) {
+    sum[t] = 0;
+    for (pw_idx k = start[t]; k < start[t + 1]; k++) {
+      sum[t] += load[b->share_block[k]];
+    }
   }
-  return sum;
+  for (pw_idx k = start[nt]; k < start[nt + 1]; k++) {
+    sum[least(sum, nt)] += load[b->share_block[k]];
+  }
+  for (pw_idx t = 0; t < nt; t++) {
+    *all += sum[t];
+    longest = sum[t] > longest ? sum[t] : longest;
+  }
+  return longest;
 }
 
 /* The same when every thread gets an equal number of blocks. */
@@ -134,21 +176,41 @@ static pw_off equal_load(const pw_blocks *b, pw_idx c, const pw_off *load, int t
   return sum;
 }
 
+static pw_off equal_loads(const pw_blocks *b, pw_idx c, const pw_off *load, int threads,
+                          pw_off *all)
+{
+  pw_off longest = 0;
+  for (int t = 0; t < threads; t++) {
+    pw_off own = equal_load(b, c, load, t, threads);
+    *all += own;
+    longest = own > longest ? own : longest;
+  }
+  return longest;
+}
+
 void pw_share_bound(const pw_blocks *b, int threads, pw_real *coloured, pw_real *plain)
 {
   pw_off size = 0, work = 0, longest = 0, part = 0;
-  const int nt = b->nthread > 0 ? b->nthread : threads;
   for (pw_idx c = 0; c <= b->ncolour; c++) {
     const pw_off *load = c < b->ncolour ? b->share_size : b->share_work;
     pw_off *all = c < b->ncolour ? &size : &work;
-    part = 0;
-    for (int t = 0; t < nt; t++) {
-      pw_off own = b->nthread > 0 ? share_load(b, c, load, t) : equal_load(b, c, load, t, nt);
-      *all += own;
-      part = own > part ? own : part;
-    }
+    part = b->nthread > 0 ? share_loads(b, c, load, all) : equal_loads(b, c, load, threads, all);
     longest += c < b->ncolour ? part : 0;
   }
   *coloured = longest > 0 ? (pw_real)size / (pw_real)longest : 1.0;
   *plain = part > 0 ? (pw_real)work / (pw_real)part : 1.0;
+}
+
+pw_status pw_share_plan(pw_blocks *b, int threads, const pw_off *size, pw_real *coloured)
+{
+  pw_real plain;
+  pw_status s = pw_share_create(b, threads);
+  if (s == PW_OK) {
+    memcpy(b->share_size, size, (size_t)b->nblock * sizeof *size);
+    memcpy(b->share_work, size, (size_t)b->nblock * sizeof *size);
+    pw_share_balance(b);
+    pw_share_bound(b, threads, coloured, &plain);
+  }
+  pw_share_destroy(b);
+  return s;
 }

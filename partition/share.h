@@ -21,6 +21,9 @@
  */
 pw_status pw_share_create(pw_blocks *b, int threads);
 
+/** @brief Free it; blocks without it are accepted. */
+void pw_share_destroy(pw_blocks *b);
+
 /**
  * @brief Divide each colour by b->share_size and all blocks by b->share_work, which the caller has
  *        set; blocks of size 0 belong to nobody and are left out.
@@ -28,7 +31,9 @@ pw_status pw_share_create(pw_blocks *b, int threads);
  * Blocks in their order, cut into parts of equal work, give each a thread to begin with. Then the
  * largest first: a block stays there while the thread has not more than its part, or else goes to
  * the thread with the least so far (Graham 1969, "Bounds on multiprocessing timing anomalies",
- * rule LPT). Allocates nothing.
+ * rule LPT). With several threads the smallest blocks of each list, a quarter of its work, are left
+ * to whoever is free first: a processor that is taken away for a while, or a block that costs more
+ * than counted, then holds up the others less. Allocates nothing.
  */
 void pw_share_balance(pw_blocks *b);
 
@@ -39,5 +44,12 @@ void pw_share_balance(pw_blocks *b);
  * @param[out] plain    sum of work / the largest share
  */
 void pw_share_bound(const pw_blocks *b, int threads, pw_real *coloured, pw_real *plain);
+
+/**
+ * @brief The bound on coloured passes that blocks without a division would have on @p threads.
+ * @param[in] size [nblock] work of each block; @p b has no division before and after
+ * @return PW_OK; PW_ERR_MEMORY.
+ */
+pw_status pw_share_plan(pw_blocks *b, int threads, const pw_off *size, pw_real *coloured);
 
 #endif /* PW_PARTITION_SHARE_H */

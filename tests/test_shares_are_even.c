@@ -1,8 +1,10 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Division of blocks among threads: each block that holds something has one owner in its colour and
- * one among all blocks, the others none; no share exceeds the mean by more than one block, which is
- * Graham's bound for any list schedule (1969); the pile's division is more even than equal numbers
- * of blocks. Records of nodes out of use never carry mass. */
+ * one among all blocks or is left to whoever is free, the others none; when the latter go to the
+ * thread that has done least, no share exceeds the mean by more than one block, which is Graham's
+ * bound for any list schedule (1969); the pile's division is more even than equal numbers of blocks,
+ * and the size that is chosen for its blocks allows 1.95 times the speed on two threads. Records of
+ * nodes out of use never carry mass. */
 #include "tests/engine_scenes.h"
 
 #include <stdlib.h>
@@ -16,20 +18,29 @@ static void check_list(const pw_blocks *b, pw_idx c, const pw_off *load)
   const bool all = c == b->ncolour;
   pw_off sum = 0, largest = 0, most = 0;
   int *seen = calloc((size_t)b->nblock, sizeof *seen);
-  for (int t = 0; t < b->nthread; t++) {
-    const pw_idx *start = b->share_start + (pw_off)c * b->nthread + t;
-    pw_off own = 0;
-    for (pw_idx l = start[0]; l < start[1]; l++) {
+  const pw_idx *start = b->share_start + (pw_off)c * (b->nthread + 1);
+  pw_off own[32] = {0}, tail = 0;
+  for (int t = 0; t <= b->nthread; t++) {
+    int to = t;
+    for (pw_idx l = start[t]; l < start[t + 1]; l++) {
       pw_idx k = b->share_block[l];
       assert_true(all || b->colour[k] == c);
-      assert_true(l == start[0] || b->share_block[l - 1] < k);
+      assert_true(t == b->nthread || l == start[t] || b->share_block[l - 1] < k);
       seen[k]++;
-      own += load[k];
+      for (int free_one = 0; t == b->nthread && free_one < t; free_one++) {
+        to = to == t || own[free_one] < own[to] ? free_one : to;
+      }
+      tail += t == b->nthread ? load[k] : 0;
+      own[to] += load[k];
+      to = t;
       largest = load[k] > largest ? load[k] : largest;
     }
-    sum += own;
-    most = own > most ? own : most;
   }
+  for (int t = 0; t < b->nthread; t++) {
+    sum += own[t];
+    most = own[t] > most ? own[t] : most;
+  }
+  assert_true(4 * tail <= sum + 4);
   for (pw_idx k = 0; k < b->nblock; k++) {
     assert_int_equal(seen[k], (all || b->colour[k] == c) && b->share_size[k] > 0);
   }
@@ -86,6 +97,34 @@ static void bounds_are_those_of_the_shares(void **state)
   pw_blocks_destroy(&b);
 }
 
+/* The grid of cases/hammered_pile: 10 m of soil and the pile's column above it. */
+static void chosen_sizes_divide_evenly(void **state)
+{
+  (void)state;
+  enum { NX = 40, NY = 128 };
+  const pw_idx cells[2] = {NX, NY};
+  pw_idx *weight = calloc(NX * NY, sizeof *weight);
+  for (int e = 0; e < NX * NY; e++) {
+    int i = e % NX, j = e / NX;
+    weight[e] = j < 80 ? (i < 29 ? 4 : 1) : i < 2 && j < 120 ? 5 : 0;
+  }
+  pw_blocks b = {0};
+  assert_ok(pw_blocks_create_even(cells, weight, 2, 2, &b));
+  pw_off *size = calloc((size_t)b.nblock, sizeof *size);
+  for (int e = 0; e < NX * NY; e++) {
+    size[b.elem_block[e]] += weight[e];
+  }
+  pw_real on_2, on_4;
+  assert_ok(pw_share_plan(&b, 2, size, &on_2));
+  assert_ok(pw_share_plan(&b, 4, size, &on_4));
+  print_message("%d blocks, %d colours: bounds %.3f on 2 threads, %.3f on 4\n", b.nblock, b.ncolour,
+                on_2, on_4);
+  assert_true(on_2 >= 1.95 && on_2 <= 2.0 && on_4 >= 3.6 && on_4 <= 4.0);
+  free(size);
+  free(weight);
+  pw_blocks_destroy(&b);
+}
+
 static void out_of_use_is_without_mass(void **state)
 {
   (void)state;
@@ -119,6 +158,7 @@ int main(void)
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(each_block_has_one_owner),
       cmocka_unit_test(bounds_are_those_of_the_shares),
+      cmocka_unit_test(chosen_sizes_divide_evenly),
       cmocka_unit_test(out_of_use_is_without_mass),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
