@@ -5,7 +5,7 @@
  * Every increment has a random direction of plane strain that turns slowly, as under a wave, and
  * the mean strain is steered back, so that the points stay within their range of pressures.
  */
-#include "kernels/hypoplastic.h"
+#include "kernels/hypoplastic_clay.h"
 
 #include <stdio.h>
 #include <stdlib.h>
@@ -45,16 +45,30 @@ static double uniform(void)
 /** The defaults of the model's keys, and the values of a common case where there is none. */
 static void parameters(const pw_material *m, bool intergranular, pw_real *v)
 {
+  const bool clay = strcmp(m->name, "hypoplastic_clay") == 0;
   const struct {
     const char *name;
     double value;
   } given[] = {{"youngs_modulus_pa", 1e7},
+               {"yield_uniaxial_pa", 5e4},
+               {"undrained_shear_strength_pa", strcmp(m->name, "tresca") == 0 ? 3e4 : 0.0},
+               {"rigidity_index", 200},
+               {"friction_angle_deg", 30},
+               {"cohesion_pa", 1e3},
+               {"compression_index_lambda", 0.2},
+               {"swelling_index_kappa", 0.04},
+               {"critical_stress_ratio", 1.0},
+               {"overconsolidation_ratio", 1.0},
+               {"compression_index_lambda_star", 0.11},
+               {"swelling_index_kappa_star", 0.016},
+               {"virgin_line_n", 1.375},
+               {"stiffness_ratio_r", 0.4},
                {"poisson_ratio", 0.3},
                {"density_kg_m3", 1800},
                {"bulk_modulus_pa", 1e7},
                {"shear_modulus_pa", 5e6},
                {"grain_density_kg_m3", 2600},
-               {"void_ratio", 0.65},
+               {"void_ratio", clay ? 0.0 : 0.65},
                {"critical_friction_angle_deg", 30},
                {"cohesion_shift_pa", 1600},
                {"granular_hardness_pa", 5.8e9},
@@ -71,6 +85,10 @@ static void parameters(const pw_material *m, bool intergranular, pw_real *v)
       value = strcmp(given[i].name, k->name) == 0 ? given[i].value : value;
     }
     v[k->offset / sizeof(pw_real)] = value;
+  }
+  if (m->check(v) != PW_OK) {
+    fprintf(stderr, "%s: %s\n", m->name, pw_error_text());
+    exit(1);
   }
 }
 
@@ -106,8 +124,37 @@ static void increments(double size)
   }
 }
 
+/** One point after the other, without vector registers: what the batch forms are held against. */
+static void one_by_one(const pw_material *m, const pw_real *v, pw_stress_args *a)
+{
+  pw_hypo_point at;
+  if (strcmp(m->name, "hypoplastic_sand") == 0) {
+    pw_hypo h;
+    pw_hypo_derive(v, &h);
+    const bool plane = pw_spin_is_plane(a->spin, ROW, a->n);
+    for (pw_idx i = 0; i < a->n; i++) {
+      pw_real modulus = 0.0;
+      at = pw_hypo_read(&h, a, plane, i);
+      (void)pw_hypo_integrate(&h, pw_t6_load(a->dstrain + i, ROW), a->dvol[i], &at, NULL, a->counts,
+                              &modulus);
+      pw_hypo_write(&h, a, &at, i);
+      a->wave_speed[i] = sqrt(modulus / a->density[i]);
+    }
+    return;
+  }
+  pw_clay c;
+  pw_clay_derive(v, &c);
+  for (pw_idx i = 0; i < a->n; i++) {
+    at = pw_hypo_read(&c.limits, a, true, i);
+    (void)pw_clay_integrate(&c, pw_t6_load(a->dstrain + i, ROW), a->dvol[i], &at, NULL, a->counts);
+    pw_hypo_write(&c.limits, a, &at, i);
+    a->wave_speed[i] = sqrt(pw_clay_evaluate(&c, &at, (pw_t6){0}).modulus / a->density[i]);
+  }
+}
+
 /** CPU seconds of an update, mean of STEPS steps of all points. */
-static double repeat(const pw_material *m, const pw_real *v, double size, pw_material_counts *n)
+static double repeat(const pw_material *m, const pw_real *v, double size, bool single,
+                     pw_material_counts *n)
 {
   double spent = 0.0;
   for (int step = 0; step < STEPS; step++) {
@@ -128,7 +175,11 @@ static double repeat(const pw_material *m, const pw_real *v, double size, pw_mat
                           .state = w.state[0] + p,
                           .wave_speed = w.speed + p,
                           .counts = n};
-      (void)m->update(v, &a);
+      if (single) {
+        one_by_one(m, v, &a);
+      } else {
+        (void)m->update(v, &a);
+      }
     }
     spent += seconds() - t;
   }
@@ -141,16 +192,16 @@ static int ascending(const void *a, const void *b)
   return (x > y) - (x < y);
 }
 
-static void measure(const pw_material *m, const char *label, const pw_real *v)
+static void measure(const pw_material *m, const char *label, const pw_real *v, bool single)
 {
   const double sizes[] = {1e-6, 1e-5, 1e-4};
   for (int k = 0; k < 3; k++) {
     double t[REPEATS];
     pw_material_counts n = {0};
     start(m, v);
-    (void)repeat(m, v, sizes[k], NULL);
+    (void)repeat(m, v, sizes[k], single, NULL);
     for (int r = 0; r < REPEATS; r++) {
-      t[r] = repeat(m, v, sizes[k], &n);
+      t[r] = repeat(m, v, sizes[k], single, &n);
     }
     qsort(t, REPEATS, sizeof t[0], ascending);
     double updates = (double)REPEATS * STEPS * POINTS, middle = t[REPEATS / 2];
@@ -170,10 +221,14 @@ int main(void)
       continue; /* the time is that of the user's routine */
     }
     parameters(m, true, v);
-    measure(m, sand ? "hypoplastic_sand, intergranular strain" : m->name, v);
+    measure(m, sand ? "hypoplastic_sand, intergranular strain" : m->name, v, false);
+    if (sand || strcmp(m->name, "hypoplastic_clay") == 0) {
+      measure(m, "    the same, one by one", v, true);
+    }
     if (sand) {
       parameters(m, false, v);
-      measure(m, "hypoplastic_sand, without", v);
+      measure(m, "hypoplastic_sand, without", v, false);
+      measure(m, "    the same, one by one", v, true);
     }
   }
   return 0;

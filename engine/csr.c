@@ -28,21 +28,41 @@ static void sort(pw_idx *list, pw_idx n)
   }
 }
 
+/* The node behind the face of element e that is opposite its node a, or -1. */
+static pw_idx node_beyond(const pw_tets *t, pw_idx e, pw_idx a)
+{
+  const pw_idx *own = t->node + 4 * (size_t)e;
+  int f = 0;
+  while (own[f] != a) {
+    f++;
+  }
+  const pw_idx other = t->beside[4 * (size_t)e + (size_t)f];
+  for (size_t i = 0; other >= 0 && i < 4; i++) {
+    if (t->beside[4 * (size_t)other + i] == e) {
+      return t->node[4 * (size_t)other + i];
+    }
+  }
+  return -1;
+}
+
 /* Nodes that couple with node a; written to list unless it is NULL. seen [nnode] holds the last
  * node, plus 1, that met a node. */
-static pw_idx nodes_beside(const pw_tet_mesh *mesh, bool coupled, pw_idx a, pw_idx *seen,
+static pw_idx nodes_beside(const pw_tet_mesh *mesh, int coupled, pw_idx a, pw_idx *seen,
                            pw_idx *list)
 {
   const pw_tets *t = &mesh->tets;
+  const bool whole = (coupled & PW_CSR_PATCHES) != 0;
   pw_idx n = 0;
   for (pw_idx l = t->node_start[a]; l < t->node_start[a + 1]; l++) {
-    pw_idx e = t->node_elem[l], p = e / mesh->per;
-    const pw_idx *near = coupled ? mesh->patch_node + p * mesh->patch_nodes : t->node + 4 * e;
-    for (pw_idx i = 0; i < (coupled ? mesh->patch_nodes : 4); i++) {
-      if (seen[near[i]] != a + 1) {
-        seen[near[i]] = a + 1;
+    pw_idx e = t->node_elem[l], p = e / mesh->per, beyond = node_beyond(t, e, a);
+    const pw_idx *near = whole ? mesh->patch_node + p * mesh->patch_nodes : t->node + 4 * e;
+    const pw_idx count = whole ? mesh->patch_nodes : 4;
+    for (pw_idx i = 0; i < count + ((coupled & PW_CSR_FACES) != 0 && beyond >= 0); i++) {
+      const pw_idx b = i < count ? near[i] : beyond;
+      if (seen[b] != a + 1) {
+        seen[b] = a + 1;
         if (list) {
-          list[n] = near[i];
+          list[n] = b;
         }
         n++;
       }
@@ -54,7 +74,7 @@ static pw_idx nodes_beside(const pw_tet_mesh *mesh, bool coupled, pw_idx a, pw_i
   return n;
 }
 
-static pw_status list_pairs(const pw_tet_mesh *mesh, bool coupled, pw_csr *m, pw_idx *seen)
+static pw_status list_pairs(const pw_tet_mesh *mesh, int coupled, pw_csr *m, pw_idx *seen)
 {
   for (pw_idx a = 0; a < m->nnode; a++) {
     m->node_start[a + 1] = m->node_start[a] + nodes_beside(mesh, coupled, a, seen, NULL);
@@ -96,7 +116,7 @@ static void tabulate_pairs(const pw_tet_mesh *mesh, pw_csr *m)
   }
 }
 
-static pw_status build(const pw_tet_mesh *mesh, bool coupled, pw_csr *m)
+static pw_status build(const pw_tet_mesh *mesh, int coupled, pw_csr *m)
 {
   pw_idx *seen = NULL;
   pw_off n = m->nnode, pairs = (pw_off)mesh->npatch * mesh->patch_nodes * mesh->patch_nodes;
@@ -113,7 +133,7 @@ static pw_status build(const pw_tet_mesh *mesh, bool coupled, pw_csr *m)
   return pw_mem_alloc("matrix: values", room, sizeof *m->value, &m->value);
 }
 
-pw_status pw_csr_create(const pw_tet_mesh *mesh, bool coupled, pw_csr *out)
+pw_status pw_csr_create(const pw_tet_mesh *mesh, int coupled, pw_csr *out)
 {
   pw_csr m = {
       .nnode = mesh->tets.nnode, .patch_nodes = mesh->patch_nodes, .patch_node = mesh->patch_node};
@@ -200,6 +220,22 @@ void pw_csr_add(pw_csr *m, pw_idx patch, const pw_real *k)
           }
         }
       }
+    }
+  }
+}
+
+void pw_csr_add_nodes(pw_csr *m, pw_idx count, const pw_idx *node, const pw_real *k)
+{
+  const size_t n = (size_t)m->nnode;
+  for (pw_idx ab = 0; ab < count * count; ab++) {
+    const pw_idx a = node[ab / count], b = node[ab % count];
+    pw_idx place = m->place[m->node_start[a] + find_pair(m, a, b)];
+    for (size_t c = 0; c < 3; c++) {
+      const pw_idx row = m->equation[c * n + (size_t)a], col = m->equation[c * n + (size_t)b];
+      if (row >= 0 && col >= 0) {
+        m->value[m->start[row] + place] += k[ab];
+      }
+      place += col >= 0;
     }
   }
 }

@@ -15,6 +15,12 @@
 
 enum { PW_PATCH_NODES = 10, PW_PATCH_DOFS = 30 }; /**< of a patch, at most */
 
+/** Nodes that couple beside those of an element; true is PW_CSR_PATCHES. */
+enum {
+  PW_CSR_PATCHES = 1, /**< all nodes of a patch (F-bar) */
+  PW_CSR_FACES = 2    /**< the nodes opposite a face from its two sides (ghost stabilisation) */
+};
+
 typedef struct pw_csr {
   pw_idx n;               /**< rows */
   pw_off *start;          /**< [n + 1] offsets into col and value */
@@ -35,10 +41,10 @@ typedef struct pw_csr {
 /**
  * @brief Find which nodes couple, and room for all equations there can be.
  * @param[in] mesh   borrowed as long as the matrix lives
- * @param[in] coupled all nodes of a patch couple (F-bar), else those of an element
+ * @param[in] coupled PW_CSR_PATCHES, PW_CSR_FACES, both, or 0: the nodes of an element alone
  * @return PW_OK; PW_ERR_MEMORY.
  */
-pw_status pw_csr_create(const pw_tet_mesh *mesh, bool coupled, pw_csr *out);
+pw_status pw_csr_create(const pw_tet_mesh *mesh, int coupled, pw_csr *out);
 
 /** @brief Free; a zeroed struct is accepted. */
 void pw_csr_destroy(pw_csr *m);
@@ -59,6 +65,14 @@ void pw_csr_clear(pw_csr *m);
  * @param[in] k [3 patch_nodes][PW_PATCH_DOFS] row-major, component c of node a at 3 a + c
  */
 void pw_csr_add(pw_csr *m, pw_idx patch, const pw_real *k);
+
+/**
+ * @brief Add the same matrix between nodes for each of the three components.
+ * @param[in] count nodes, at most PW_PATCH_NODES; any two of them must couple
+ * @param[in] node  [count]
+ * @param[in] k     [count][count]
+ */
+void pw_csr_add_nodes(pw_csr *m, pw_idx count, const pw_idx *node, const pw_real *k);
 
 /** @brief y = A x; both [n]. */
 void pw_csr_multiply(const pw_csr *m, const pw_real *x, pw_real *y);

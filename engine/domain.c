@@ -159,6 +159,25 @@ static void hold_place(pw_points *p, pw_idx i, bool axi)
   }
 }
 
+/* Whether a domain is, beyond round-off, within all limits: most are, and need no divisions.
+ * @param spread aspect + 1 / aspect of the most slender domain; 0: no such limit */
+static bool is_compact(const pw_sim *sim, pw_idx i, const pw_real r[4], pw_real spread)
+{
+  const pw_points *p = &sim->points;
+  const pw_real limit = sim->limit[p->id[i]], within = 1.0 - 1e-9;
+  pw_real inv[2] = {1.0, 1.0};
+  for (int a = 0; sim->mesh.graded && a < 2; a++) {
+    const pw_grid_axis *axis = &sim->mesh.axis[a];
+    inv[a] = axis->inv[pw_grid_axis_cell(axis, pw_grid_axis_clamp(axis, p->x[a * p->ld + i]))];
+  }
+  const pw_real s[4] = {r[0] * inv[0], r[1] * inv[1], r[2] * inv[0], r[3] * inv[1]};
+  const pw_real xx = s[0] * s[0] + s[2] * s[2], yy = s[1] * s[1] + s[3] * s[3];
+  const pw_real across = 2.0 * (s[0] * s[2] + s[1] * s[3]), square = xx + yy;
+  const pw_real det = s[0] * s[3] - s[1] * s[2];
+  const bool round = spread <= 0.0 || square <= det * spread * within;
+  return round && square + fabs(across) <= limit * limit * within; /* the longer diagonal */
+}
+
 void pw_domain_convect(pw_sim *sim, const pw_gradients *grad, pw_idx first, pw_idx n,
                        pw_block_sums *sums)
 {
@@ -166,6 +185,7 @@ void pw_domain_convect(pw_sim *sim, const pw_gradients *grad, pw_idx first, pw_i
   const pw_idx ld = p->ld;
   const bool axi = sim->scene.geometry == PW_AXI;
   const pw_real aspect = sim->scene.method.domain_aspect_max;
+  const pw_real spread = aspect > 0.0 ? aspect + 1.0 / aspect : 0.0;
   for (pw_idx i = first; i < first + n; i++) {
     const pw_real *f = p->def_grad + i, *r0 = p->half0 + i;
     pw_real r[4];
@@ -175,9 +195,11 @@ void pw_domain_convect(pw_sim *sim, const pw_gradients *grad, pw_idx first, pw_i
       r[2 * k + 1] = f[2 * ld] * x + f[3 * ld] * y;
     }
     pw_real limit;
-    bool changed = aspect > 0.0 && reshape(sim, i, axi ? p->vol[i] / p->x[i] : p->vol[i], r);
+    const bool compact = is_compact(sim, i, r, spread);
+    bool changed =
+        !compact && aspect > 0.0 && reshape(sim, i, axi ? p->vol[i] / p->x[i] : p->vol[i], r);
     sums->reshaped += changed ? 1 : 0;
-    if (limit_domain(sim, i, r, &limit)) {
+    if (!compact && limit_domain(sim, i, r, &limit)) {
       changed = true;
       sums->limited++;
       pw_real area = axi ? p->vol[i] / p->x[i] : p->vol[i];

@@ -15,6 +15,7 @@
 #include "engine/scene.h"
 
 typedef struct pw_sim pw_sim;
+typedef struct pw_solid_hooks pw_solid_hooks; /**< engine/implicit_state.h */
 
 /** Where in a step a hook runs (engine/step_explicit.c). */
 typedef enum pw_stage {
@@ -70,6 +71,9 @@ struct pw_effect {
   void (*results)(const pw_sim *sim, void *ctx, pw_record *out);
   /** @brief Save or load its state, under its own name; may be NULL. */
   pw_status (*archive)(pw_sim *sim, void *ctx, pw_archive *ar);
+  /** What it does in scenes of geometry solid; the members from point_fields on are then not used,
+   *  but keys, rows and check. NULL: an effect of plane and axisymmetric scenes. */
+  const pw_solid_hooks *solid;
 };
 
 /** @brief The effect of that name, or NULL. */
@@ -77,5 +81,11 @@ const pw_effect *pw_effect_find(const char *name);
 
 /** @brief The @p i-th effect of engine/effects.def, or NULL past its end. */
 const pw_effect *pw_effect_at(int i);
+
+/** @brief The @p i-th effect of engine/solid_effects.def, or NULL past its end. */
+const pw_effect *pw_solid_effect_at(int i);
+
+/** @brief The effect of that name for scenes of this one's geometry, or NULL. */
+const pw_effect *pw_effect_of(const pw_scene *scene, const char *name);
 
 #endif /* PW_ENGINE_EFFECT_H */

@@ -4,6 +4,8 @@
 #include <math.h>
 #include <string.h>
 
+#include "engine/rates.h"
+
 static pw_real *cell_sums(const pw_sim *sim, int body)
 {
   return sim->fbar->sum + 2 * (pw_off)body * sim->mesh.nelem;
@@ -16,6 +18,13 @@ void pw_fbar_clear(pw_sim *sim)
       memset(cell_sums(sim, b), 0, 2 * (size_t)sim->mesh.nelem * sizeof(pw_real));
     }
   }
+}
+
+/* Cell of a point; -1: outside, or one whose points take other steps. */
+static pw_idx cell_of(const pw_sim *sim, pw_idx block, const pw_real *x)
+{
+  const pw_idx e = pw_mesh_locate(&sim->mesh, x);
+  return e >= 0 && pw_rates_share(sim, block, e) ? e : -1;
 }
 
 /* The part of the stress that works on a change of volume, where F-bar scales the components. */
@@ -36,7 +45,7 @@ void pw_block_fbar_sum(void *ctx, pw_idx block)
     pw_real *sum = cell_sums(sim, b);
     for (pw_idx i = range[0]; c->body[b] && i < range[1]; i++) {
       pw_real x[2] = {p->x[i], p->x[p->ld + i]};
-      const pw_idx e = c->element[i] = pw_mesh_locate(&sim->mesh, x);
+      const pw_idx e = c->element[i] = cell_of(sim, block, x);
       if (e >= 0) {
         sum[2 * (pw_off)e] += p->vol[i];
         sum[2 * (pw_off)e + 1] += p->vol[i] * mean_stress(sim, i);
@@ -71,7 +80,7 @@ static pw_real volume_ratio(const pw_real *du, pw_off stride)
   return ((1.0 + xx) * (1.0 + yy) - xy * yx) * (1.0 + du[4 * stride]);
 }
 
-static void gather_range(const pw_update_pass *pass, int b, pw_idx first, pw_idx n)
+static void gather_range(const pw_update_pass *pass, pw_idx block, int b, pw_idx first, pw_idx n)
 {
   pw_sim *sim = pass->sim;
   pw_fbar_cells *c = sim->fbar;
@@ -80,10 +89,11 @@ static void gather_range(const pw_update_pass *pass, int b, pw_idx first, pw_idx
   pw_gradients grad;
   for (pw_idx i = first; i < first + n; i++) {
     pw_real x[2] = {p->x[i], p->x[p->ld + i]};
-    c->element[i] = pw_mesh_locate(&sim->mesh, x);
+    c->element[i] = cell_of(sim, block, x);
   }
   sim->kernels->g2p_gradient(&sim->transfer, pw_nodes_field(&sim->nodes, sim->body[b].field),
-                             pass->slot, sim->dt, pass->move, first, first + n, &grad);
+                             pass->slot, pw_rates_dt(sim, block), pass->move, first, first + n,
+                             &grad);
   for (int k = 0; k < 5; k++) {
     memcpy(c->du + (pw_off)k * p->ld + first, grad.du[k], (size_t)n * sizeof(pw_real));
   }
@@ -103,7 +113,8 @@ void pw_block_fbar_gather(void *ctx, pw_idx block)
   for (int b = 0; b < sim->nbody; b++) {
     const pw_idx *range = sim->blocks.point_start + (pw_off)block * sim->nbody + b;
     for (pw_idx first = range[0]; sim->fbar->body[b] && first < range[1]; first += PW_CHUNK) {
-      gather_range(pass, b, first, range[1] - first < PW_CHUNK ? range[1] - first : PW_CHUNK);
+      gather_range(pass, block, b, first,
+                   range[1] - first < PW_CHUNK ? range[1] - first : PW_CHUNK);
     }
   }
 }
@@ -116,6 +127,17 @@ void pw_fbar_gradients(const pw_fbar_cells *c, pw_idx ld, pw_idx first, pw_idx n
   }
 }
 
+/* Cube root; for ratios of one step, which are near 1, by its series, whose next term is below
+ * 1e-16. */
+static pw_real root3(pw_real ratio)
+{
+  const pw_real x = ratio - 1.0;
+  if (!(fabs(x) < 1e-3)) {
+    return cbrt(ratio);
+  }
+  return 1.0 + x * (1.0 / 3.0 + x * (-1.0 / 9.0 + x * (5.0 / 81.0 - x * (10.0 / 243.0))));
+}
+
 void pw_fbar_apply(pw_sim *sim, int body, pw_idx first, pw_idx n, pw_real *dstrain, pw_real *dvol)
 {
   const pw_fbar_cells *c = sim->fbar;
@@ -125,7 +147,7 @@ void pw_fbar_apply(pw_sim *sim, int body, pw_idx first, pw_idx n, pw_real *dstra
   for (pw_idx i = 0; i < n; i++) {
     const pw_idx e = c->element[first + i];
     pw_real mean = e >= 0 ? sum[2 * (pw_off)e + 1] / sum[2 * (pw_off)e] : dvol[i];
-    pw_real ratio = mean / dvol[i], scale = axi ? cbrt(ratio) : sqrt(ratio);
+    pw_real ratio = mean / dvol[i], scale = axi ? root3(ratio) : sqrt(ratio);
     dstrain[i] = scale * (1.0 + dstrain[i]) - 1.0;
     dstrain[PW_CHUNK + i] = scale * (1.0 + dstrain[PW_CHUNK + i]) - 1.0;
     dstrain[2 * PW_CHUNK + i] =

@@ -95,10 +95,26 @@ static pw_exit read_options(int argc, char **argv, pw_run_options *o, const char
                                : PW_EXIT_FINISHED;
 }
 
+/* Messages of the reader, or the last error, at its place in the scene where it names a key. */
+static void print_errors(const pw_run_options *o, pw_status status, char *messages)
+{
+  char *located = messages && *messages
+                      ? NULL
+                      : pw_scene_locate(o->scene_file, o->nset, o->set, pw_error_text());
+  if (messages && *messages) {
+    fputs(messages, stderr);
+  } else if (located) {
+    fputs(located, stderr);
+  } else {
+    fprintf(stderr, "error: %s\n", *pw_error_text() ? pw_error_text() : pw_status_text(status));
+  }
+  free(located);
+}
+
 static pw_exit check(const pw_run_options *o)
 {
   char *messages = NULL;
-  pw_sim *sim = NULL;
+  pw_job job = {NULL, NULL};
   pw_scene *scene = malloc(sizeof *scene);
   pw_status status = scene ? PW_OK : PW_ERR_MEMORY;
 
@@ -106,17 +122,18 @@ static pw_exit check(const pw_run_options *o)
     status = pw_scene_read_file(o->scene_file, o->nset, o->set, scene, &messages);
   }
   if (status == PW_OK) {
-    status = pw_sim_create(scene, o->threads, &sim);
+    job.kind = pw_job_kind_of(scene);
+    status = job.kind->create(scene, o->threads, &job.sim);
   }
   if (status == PW_OK) {
     printf("%s can be run\n", o->scene_file);
-    pw_check_report(sim, stdout);
-  } else if (messages && *messages) {
-    fputs(messages, stderr);
+    job.kind->check(job.sim, stdout);
   } else {
-    fprintf(stderr, "error: %s\n", *pw_error_text() ? pw_error_text() : pw_status_text(status));
+    print_errors(o, status, messages);
   }
-  pw_sim_destroy(&sim);
+  if (job.kind) {
+    job.kind->destroy(&job.sim);
+  }
   free(messages);
   free(scene);
   return status == PW_OK ? PW_EXIT_FINISHED : PW_EXIT_SCENE;

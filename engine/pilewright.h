@@ -21,6 +21,7 @@
 #ifndef PW_ENGINE_PILEWRIGHT_H
 #define PW_ENGINE_PILEWRIGHT_H
 
+#include "engine/implicit.h"
 #include "engine/scene.h"
 #include "engine/sim.h"
 #include "io/check_report.h"
@@ -29,8 +30,13 @@
 #include "io/pictures.h"
 #include "io/restart.h"
 #include "io/run.h"
+#include "io/run_job.h"
 #include "io/scene_file.h"
 #include "io/snapshot.h"
+#include "io/solid_check.h"
+#include "io/solid_mesh.h"
+#include "io/solid_pictures.h"
+#include "io/solid_snapshot.h"
 #include "io/summary.h"
 
 #endif /* PW_ENGINE_PILEWRIGHT_H */

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "engine/ranges.h"
 
+#include "engine/rates.h"
 #include "partition/share.h"
 
 /* What gather, deformation and domain of a point cost, in evaluations of the sand's rates. */
@@ -32,9 +33,8 @@ static void clear_empty(pw_sim *sim)
 }
 
 /* The support of a block in field f. */
-static void use_support(pw_sim *sim, pw_idx block, int f)
+static void use_support(const pw_blocks *b, pw_idx block, int f, pw_nodes *nodes)
 {
-  const pw_blocks *b = &sim->blocks;
   const pw_idx row = b->cells[0] + 1;
   for (pw_idx m = b->elem_start[block]; m < b->elem_start[block + 1]; m++) {
     const pw_idx i = b->elem[m] % b->cells[0], j = b->elem[m] / b->cells[0];
@@ -42,22 +42,27 @@ static void use_support(pw_sim *sim, pw_idx block, int f)
     const pw_idx right = i + 1 + b->reach < b->cells[0] ? i + 1 + b->reach : b->cells[0];
     for (pw_idx y = j > b->reach ? j - b->reach : 0; y <= j + 1 + b->reach && y <= b->cells[1];
          y++) {
-      pw_nodes_use(&sim->nodes, f, y * row + left, right - left + 1);
+      pw_nodes_use(nodes, f, y * row + left, right - left + 1);
+    }
+  }
+}
+
+void pw_ranges_use(const pw_sim *sim, pw_idx block, pw_nodes *nodes)
+{
+  const pw_blocks *b = &sim->blocks;
+  for (int body = 0; body < b->nbody; body++) {
+    const pw_idx *start = b->point_start + (pw_off)block * b->nbody + body;
+    if (start[1] > start[0]) {
+      use_support(b, block, sim->body[body].field, nodes);
     }
   }
 }
 
 static void use_nodes(pw_sim *sim)
 {
-  const pw_blocks *b = &sim->blocks;
   pw_nodes_reset(&sim->nodes);
-  for (int body = 0; body < b->nbody; body++) {
-    for (pw_idx k = 0; k < b->nblock; k++) {
-      const pw_idx *start = b->point_start + (pw_off)k * b->nbody + body;
-      if (start[1] > start[0]) {
-        use_support(sim, k, sim->body[body].field);
-      }
-    }
+  for (pw_idx k = 0; k < sim->blocks.nblock; k++) {
+    pw_ranges_use(sim, k, &sim->nodes);
   }
 }
 
@@ -66,4 +71,7 @@ void pw_ranges_renew(pw_sim *sim)
   clear_empty(sim);
   use_nodes(sim);
   pw_ranges_balance(sim);
+  if (sim->rates) {
+    pw_rates_renew(sim);
+  }
 }

@@ -24,4 +24,7 @@ void pw_ranges_renew(pw_sim *sim);
  */
 void pw_ranges_balance(pw_sim *sim);
 
+/** @brief Put in use, in @p nodes, the records within reach of the points of a block. */
+void pw_ranges_use(const pw_sim *sim, pw_idx block, pw_nodes *nodes);
+
 #endif /* PW_ENGINE_RANGES_H */

@@ -20,8 +20,9 @@
 const pw_key pw_scene_keys_top[] = {
   {"title", PW_KEY_TEXT, AT(title), 0, 0, "", NULL, NULL,
    "name of the run in reports and pictures"},
-  {"geometry", PW_KEY_CHOICE, AT(geometry), 0, 0, NULL, "plane_strain|axisymmetric", NULL,
-   "plane strain per metre of depth, or axisymmetric with x the radius and y the axis"},
+  {"geometry", PW_KEY_CHOICE, AT(geometry), 0, 0, NULL, "plane_strain|axisymmetric|solid", NULL,
+   "plane strain per metre of depth, axisymmetric with x the radius and y the axis, or solid: "
+   "tetrahedra and implicit steps"},
   {0}};
 
 const pw_key pw_scene_keys_grid[] = {
@@ -66,6 +67,8 @@ const pw_key pw_scene_keys_method[] = {
    "nodes with less than this part of a full cell's mass stay at rest"},
   {"noise_damping_per_s", PW_KEY_REAL, AT(method.noise_damping_per_s), 0, 1e6, "0", NULL, NULL,
    "rate at which velocities of points that the grid does not see die out (a share of PIC)"},
+  {"step_ratio_max", PW_KEY_INT, AT(method.step_ratio_max), 1, 16, "1", NULL, NULL,
+   "most short steps that blocks of slow points take at once, a power of two; 1: all step together"},
   {"block_elements", PW_KEY_INT, AT(method.block_elements), 0, 1e6, "0", NULL, NULL,
    "elements in a block of the coloured scatter; 0: chosen from the grid"},
   {0}};
@@ -170,6 +173,7 @@ static void parse_fallback(const pw_key *key, pw_key_value *out)
   switch (key->type) {
   case PW_KEY_REAL:
   case PW_KEY_PAIR:
+  case PW_KEY_TRIPLE:
   case PW_KEY_REALS:
   case PW_KEY_INT:
     fallback_numbers(key->fallback, out);
@@ -213,11 +217,14 @@ void pw_scene_default(pw_scene *out)
   pw_scene_defaults(pw_scene_keys_time, out);
   pw_scene_defaults(pw_scene_keys_method, out);
   pw_scene_defaults(pw_scene_keys_output, out);
+  pw_scene_defaults(pw_scene_keys_mesh, out);
+  pw_scene_defaults(pw_scene_keys_implicit, out);
+  pw_scene_defaults(pw_scene_keys_solid_output, out);
 }
 
 void *pw_scene_add_effect(pw_scene *scene, const char *name)
 {
-  const pw_effect *type = pw_effect_find(name);
+  const pw_effect *type = pw_effect_of(scene, name);
   if (!type || scene->neffect >= PW_MAX_EFFECTS) {
     return NULL;
   }

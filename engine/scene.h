@@ -12,11 +12,12 @@
 #include "engine/core/key.h"
 #include "engine/core/status.h"
 #include "engine/mesh.h"
+#include "engine/scene_solid.h"
 #include "kernels/material.h"
 
 typedef struct pw_effect pw_effect;
 
-typedef enum pw_geometry { PW_PLANE, PW_AXI } pw_geometry;
+typedef enum pw_geometry { PW_PLANE, PW_AXI, PW_SOLID } pw_geometry;
 typedef enum pw_basis { PW_LINEAR, PW_UGIMP, PW_CPDI } pw_basis;
 typedef enum pw_update { PW_MUSL, PW_USL, PW_USF } pw_update;
 typedef enum pw_shape { PW_SHAPE_RECTANGLE, PW_SHAPE_DISC, PW_SHAPE_PILE, PW_SHAPE_RING } pw_shape;
@@ -66,6 +67,8 @@ typedef struct pw_scene_body {
   int rod_elements;              /**< rod: elements along its length */
   pw_real surface_segment_m;     /**< rigid, rod: pieces of its surface; 0: chosen */
   pw_real velocity_m_s[2];
+  char volume[PW_NAME];        /**< solid: group of the mesh that it fills; "": all of it */
+  pw_real low_m[3], high_m[3]; /**< solid: box of the cells filled; equal: all */
   int nrefine;
   pw_scene_refine refine[PW_MAX_REFINE];
 } pw_scene_body;
@@ -76,7 +79,7 @@ typedef struct pw_scene_effect {
   _Alignas(16) unsigned char param[PW_EFFECT_BYTES]; /**< the effect's own parameter struct */
 } pw_scene_effect;
 
-typedef struct pw_scene {
+struct pw_scene {
   char title[PW_NAME];
   char file[256]; /**< where it was read from, for reports; may be "" */
   int geometry;   /**< pw_geometry */
@@ -90,6 +93,7 @@ typedef struct pw_scene {
     pw_real domain_aspect_max;   /**< longest to shortest half-side of a domain; 0: no limit */
     pw_real mass_cut_off;        /**< of the mass of a full cell's node; nodes below are passive */
     pw_real noise_damping_per_s; /**< rate at which points' velocities approach the grid's */
+    int step_ratio_max;          /**< most short steps that slow points take at once; 1: none */
     int block_elements;          /**< elements in a METIS block; 0: chosen from the grid */
   } method;
   struct {
@@ -102,7 +106,8 @@ typedef struct pw_scene {
   pw_scene_material material[PW_MAX_MATERIALS];
   pw_scene_body body[PW_MAX_BODIES];
   pw_scene_effect effect[PW_MAX_EFFECTS];
-} pw_scene;
+  pw_scene_solid solid; /**< with geometry PW_SOLID, instead of grid, time.cfl and method */
+};
 
 /** Key tables of the scene's own sections; offsets are into pw_scene for the first five. */
 extern const pw_key pw_scene_keys_top[];    /**< title, geometry */

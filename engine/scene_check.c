@@ -61,6 +61,20 @@ pw_status pw_scene_check_time(const pw_scene *s)
   return PW_OK;
 }
 
+pw_status pw_scene_check_method(const pw_scene *s)
+{
+  const int ratio = s->method.step_ratio_max;
+  PW_REQUIRE((ratio & (ratio - 1)) == 0, PW_ERR_SCENE,
+             "step_ratio_max = %d must be a power of two: 1, 2, 4, 8 or 16", ratio);
+  PW_REQUIRE(ratio <= 1 || s->method.update == PW_MUSL, PW_ERR_SCENE,
+             "step_ratio_max = %d needs update: musl", ratio);
+  for (int e = 0; ratio > 1 && e < s->neffect; e++) {
+    PW_REQUIRE(strcmp(s->effect[e].type->name, "body_force") != 0, PW_ERR_SCENE,
+               "step_ratio_max = %d: body_force needs all points to step together", ratio);
+  }
+  return PW_OK;
+}
+
 pw_status pw_scene_check_output(const pw_scene *s)
 {
   PW_REQUIRE(s->output.picture_x_m[0] <= s->output.picture_x_m[1], PW_ERR_SCENE,
@@ -206,6 +220,9 @@ static pw_status check_sizes(const pw_scene *s, const pw_scene_body *b, const pw
 pw_status pw_scene_check_body(const pw_scene *s, int i)
 {
   const pw_scene_body *b = &s->body[i];
+  if (s->geometry == PW_SOLID) {
+    return pw_scene_check_solid_body(s, i);
+  }
   for (int k = 0; k < i; k++) {
     PW_REQUIRE(strcmp(s->body[k].name, b->name) != 0, PW_ERR_SCENE, "two bodies have the name '%s'",
                b->name);
@@ -302,9 +319,15 @@ static pw_status check_lists(const pw_scene *s)
 pw_status pw_scene_check(const pw_scene *s)
 {
   PW_TRY(check_lists(s));
-  PW_TRY(in_section(pw_scene_check_grid(s), "grid", ""));
-  PW_TRY(in_section(pw_scene_check_time(s), "time", ""));
-  PW_TRY(in_section(pw_scene_check_output(s), "output", ""));
+  if (s->geometry == PW_SOLID) {
+    PW_TRY(in_section(pw_scene_check_mesh(s), "mesh", ""));
+    PW_TRY(in_section(pw_scene_check_implicit(s), "implicit", ""));
+  } else {
+    PW_TRY(in_section(pw_scene_check_grid(s), "grid", ""));
+    PW_TRY(in_section(pw_scene_check_time(s), "time", ""));
+    PW_TRY(in_section(pw_scene_check_method(s), "method", ""));
+    PW_TRY(in_section(pw_scene_check_output(s), "output", ""));
+  }
   for (int i = 0; i < s->nmaterial; i++) {
     PW_TRY(in_section(pw_scene_check_material(s, i), "materials.", s->material[i].name));
   }

@@ -18,6 +18,7 @@ pw_status pw_scene_check_grid(const pw_scene *scene);
 
 /** @brief Time step limits that do not contradict each other. */
 pw_status pw_scene_check_time(const pw_scene *scene);
+pw_status pw_scene_check_method(const pw_scene *scene);
 
 /** @brief Windows of the pictures. */
 pw_status pw_scene_check_output(const pw_scene *scene);

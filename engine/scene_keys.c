@@ -130,6 +130,9 @@ void pw_key_store(const pw_key *keys, const pw_key *key, const pw_key_value *val
   case PW_KEY_PAIR:
     memcpy(at, value->v, 2 * sizeof(pw_real));
     break;
+  case PW_KEY_TRIPLE:
+    memcpy(at, value->v, 3 * sizeof(pw_real));
+    break;
   case PW_KEY_REALS: {
     pw_reals list = {.n = value->n};
     memcpy(list.v, value->v, (size_t)value->n * sizeof(pw_real));

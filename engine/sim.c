@@ -9,6 +9,7 @@
 #include "engine/bodies.h"
 #include "engine/core/mem.h"
 #include "engine/domain.h"
+#include "engine/rates.h"
 #include "engine/schedule.h"
 #include "engine/sim_report.h"
 #include "engine/step_explicit.h"
@@ -303,6 +304,9 @@ static pw_status build(pw_sim *sim)
   PW_TRY(create_blocks(sim, reach_cells));
   PW_TRY(pw_nodes_create(sim->mesh.nnode, field_count(scene), &sim->nodes));
   bind_transfer(sim);
+  if (scene->method.step_ratio_max > 1) {
+    PW_TRY(pw_rates_create(sim));
+  }
   init_materials(sim);
   PW_TRY(pw_update_sort(sim));
   pw_real density = PW_HUGE;
@@ -331,6 +335,8 @@ static pw_status build(pw_sim *sim)
 pw_status pw_sim_create(const pw_scene *scene, int threads, pw_sim **out)
 {
   pw_sim *sim = NULL;
+  PW_REQUIRE(scene->geometry != PW_SOLID, PW_ERR_SCENE,
+             "geometry: a solid scene is run by implicit steps");
   PW_TRY(pw_mem_alloc("simulation", 1, sizeof *sim, &sim));
   sim->scene = *scene;
   sim->threads = threads > 0 ? threads : omp_get_max_threads();
@@ -355,6 +361,7 @@ void pw_sim_destroy(pw_sim **sim_ptr)
     }
   }
   pw_structures_destroy(sim);
+  pw_rates_destroy(sim);
   pw_points_destroy(&sim->points);
   pw_nodes_destroy(&sim->nodes);
   pw_blocks_destroy(&sim->blocks);
@@ -364,6 +371,43 @@ void pw_sim_destroy(pw_sim **sim_ptr)
   pw_mem_free(&sim->from);
   pw_mem_free(&sim->scratch);
   pw_mem_free(sim_ptr);
+}
+
+/* Short steps of the next cycle, at most what is left until dt_limit: as many as there are levels
+ * for, or fewer and shorter; two even cycles rather than a full one and a sliver. */
+static int plan_cycle(pw_sim *sim, pw_real dt_limit)
+{
+  const int most = pw_rates_cycle(sim);
+  const pw_real full = most * sim->dt;
+  if (dt_limit <= 0.0 || 2.0 * full <= dt_limit) {
+    return most;
+  }
+  const pw_real length = full < dt_limit ? 0.5 * dt_limit : dt_limit;
+  int n = 1;
+  while (n < most && length > n * sim->dt * (1.0 + 1e-12)) {
+    n++;
+  }
+  sim->dt = pw_min(sim->dt, length / n);
+  return n;
+}
+
+static pw_status make_cycle(pw_sim *sim, int n)
+{
+  bool together = false;
+  for (int k = 0; k < n && !together; k++) {
+    pw_rates_begin(sim, k, n);
+    PW_TRY(pw_step_explicit(sim));
+    sim->dt_min = sim->step <= 1 ? sim->dt : pw_min(sim->dt_min, sim->dt);
+    sim->dt_max = pw_max(sim->dt_max, sim->dt);
+    together = sim->sort_needed;
+    if (together && !pw_rates_together(sim)) {
+      PW_TRY(pw_rates_join(sim));
+    }
+  }
+  if (sim->rates) {
+    pw_rates_choose(sim);
+  }
+  return PW_OK;
 }
 
 pw_status pw_sim_step(pw_sim *sim, pw_real dt_limit)
@@ -377,14 +421,7 @@ pw_status pw_sim_step(pw_sim *sim, pw_real dt_limit)
   if (sim->dt_contact > 0.0) {
     sim->dt = pw_min(sim->dt, sim->dt_contact);
   }
-  if (dt_limit > 0.0 && sim->dt < dt_limit && 2.0 * sim->dt > dt_limit) {
-    sim->dt = 0.5 * dt_limit; /* two even steps rather than a full one and a sliver */
-  } else if (dt_limit > 0.0) {
-    sim->dt = pw_min(sim->dt, dt_limit);
-  }
-  pw_status status = pw_step_explicit(sim);
-  sim->dt_min = sim->step <= 1 ? sim->dt : pw_min(sim->dt_min, sim->dt);
-  sim->dt_max = pw_max(sim->dt_max, sim->dt);
+  pw_status status = make_cycle(sim, plan_cycle(sim, dt_limit));
   sim->wall += omp_get_wtime() - start;
   return status;
 }

@@ -8,6 +8,8 @@
 #include "engine/effects/contact_corner.h"
 #include "engine/interface.h"
 #include "engine/ranges.h"
+#include "engine/rates.h"
+#include "engine/scene_hash.h"
 #include "engine/structure_sim.h"
 #include "engine/update.h"
 #include "partition/share.h"
@@ -129,76 +131,10 @@ void pw_sim_results(const pw_sim *sim, pw_record *out)
   }
 }
 
-static void hash_bytes(uint64_t *hash, const void *data, size_t size)
-{
-  const unsigned char *byte = data;
-  for (size_t k = 0; k < size; k++) {
-    *hash = (*hash ^ byte[k]) * UINT64_C(0x100000001b3); /* FNV-1a */
-  }
-}
-
-static void hash_body(uint64_t *hash, const pw_scene_body *b)
-{
-  const pw_real size[] = {b->x_m[0],   b->x_m[1],  b->y_m[0],       b->y_m[1],
-                          b->radius_m, b->tip_y_m, b->centre_m[0],  b->centre_m[1],
-                          b->length_m, b->mass_kg, b->tip_length_m, b->surface_segment_m};
-  const int choice[] = {b->kind, b->shape, b->tip, b->rod_elements, b->material};
-  hash_bytes(hash, size, sizeof size);
-  hash_bytes(hash, choice, sizeof choice);
-}
-
-/* Parameters as numbers and texts; of a file its name alone, wherever it lies. As many places as
- * checkpoints have always known, and all of them for models with more. */
-static void hash_material(uint64_t *hash, const pw_scene_material *m)
-{
-  enum { PLACES = 32 };
-  pw_real param[PW_MAX_PARAMS];
-  size_t count = PLACES;
-  memcpy(param, m->param, sizeof param);
-  for (const pw_key *key = m->model->keys; key->name; key++) {
-    count = key->offset >= PLACES * sizeof *param ? PW_MAX_PARAMS : count;
-    if (key->type == PW_KEY_FILE) {
-      char *path = (char *)param + key->offset, *slash = strrchr(path, '/');
-      const size_t length = slash ? strlen(slash + 1) : strlen(path);
-      memmove(path, slash ? slash + 1 : path, length);
-      memset(path + length, 0, PW_FILE_NAME - length);
-    }
-  }
-  hash_bytes(hash, m->model->name, strlen(m->model->name));
-  hash_bytes(hash, param, count * sizeof *param);
-}
-
-/* Everything of a scene that results depend on, so not its end, outputs, title and file. */
-static uint64_t scene_hash(const pw_scene *s)
-{
-  uint64_t hash = UINT64_C(0xcbf29ce484222325);
-  const pw_real time[3] = {s->time.cfl, s->time.dt_max_s, s->time.dt_s};
-  hash_bytes(&hash, &s->geometry, sizeof s->geometry);
-  hash_bytes(&hash, &s->grid, sizeof s->grid);
-  hash_bytes(&hash, time, sizeof time);
-  hash_bytes(&hash, &s->method.basis, sizeof s->method.basis);
-  hash_bytes(&hash, &s->method.update, sizeof s->method.update);
-  hash_bytes(&hash, &s->method.domain_limit_cells, sizeof(pw_real));
-  hash_bytes(&hash, &s->method.domain_aspect_max, sizeof(pw_real));
-  hash_bytes(&hash, &s->method.mass_cut_off, sizeof(pw_real));
-  hash_bytes(&hash, &s->method.noise_damping_per_s, sizeof(pw_real));
-  for (int m = 0; m < s->nmaterial; m++) {
-    hash_material(&hash, &s->material[m]);
-  }
-  for (int b = 0; b < s->nbody; b++) {
-    hash_body(&hash, &s->body[b]);
-  }
-  for (int e = 0; e < s->neffect; e++) {
-    hash_bytes(&hash, s->effect[e].type->name, strlen(s->effect[e].type->name));
-    hash_bytes(&hash, s->effect[e].param, sizeof s->effect[e].param);
-  }
-  return hash;
-}
-
 /* What tells one scene's checkpoint from another's: sizes, and a hash of the parameters. */
 static pw_status archive_identity(pw_sim *sim, pw_archive *ar)
 {
-  const uint64_t hash = scene_hash(&sim->scene);
+  const uint64_t hash = pw_scene_hash(&sim->scene);
   const pw_idx want[10] = {sim->points.n,
                            sim->mesh.nnode,
                            sim->mesh.nelem,
@@ -285,6 +221,7 @@ pw_status pw_sim_archive(pw_sim *sim, pw_archive *ar)
   PW_TRY(pw_points_archive(&sim->points, ar));
   PW_TRY(ar->loading ? check_ranges(sim) : PW_OK);
   PW_TRY(pw_structures_archive(sim, ar));
+  PW_TRY(pw_rates_archive(sim, ar));
   for (int k = 0; k < sim->scene.neffect; k++) {
     if (sim->scene.effect[k].type->archive) {
       PW_TRY(sim->scene.effect[k].type->archive(sim, sim->ctx[k], ar));

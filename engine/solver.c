@@ -1,64 +1,91 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "engine/solver.h"
 
-#include <cholmod.h>
 #include <math.h>
+#include <stdio.h>
 #include <string.h>
-#include <umfpack.h>
 
 #include "engine/core/mem.h"
+#include "engine/solver_parts.h"
 
-/* Present when the BLAS in use is OpenBLAS. */
-extern void openblas_set_num_threads(int n) __attribute__((weak));
-
-struct pw_solver {
-  bool symmetric;
-  int threads;
-  pw_off revision; /* of the pattern in col */
-  bool in_umfpack; /* the last factor is UMFPACK's */
-  pw_off room_rows, room;
-  SuiteSparse_long *start, *col; /* pattern with long indices, as both libraries take it */
-  cholmod_common common;
-  cholmod_factor *factor;
-  bool analysed; /* by UMFPACK */
-  void *symbolic, *numeric;
-  double control[UMFPACK_CONTROL], info[UMFPACK_INFO];
-  cholmod_dense *y, *e; /* workspace of CHOLMOD's solves */
-  pw_solver_counts counts;
+static const struct {
+  const char *name;
+  const pw_solver_calls *calls;
+} engines[PW_SOLVER_ENGINES] = {
+    [PW_SOLVER_AUTO] = {"automatic", NULL},
+    [PW_SOLVER_DIRECT] = {"direct", &pw_solver_direct_calls},
+    [PW_SOLVER_KRYLOV] = {"krylov", &pw_solver_krylov_calls},
+    [PW_SOLVER_PETSC_GAMG] = {"petsc_gamg", &pw_solver_petsc_calls},
+    [PW_SOLVER_PETSC_ILU] = {"petsc_ilu", &pw_solver_petsc_calls},
 };
 
-pw_status pw_solver_create(bool symmetric, int threads, pw_solver **out)
+struct pw_solver {
+  pw_solver_options options;
+  pw_solver_engine chosen; /* PW_SOLVER_AUTO: not yet */
+  const pw_solver_calls *calls;
+  void *state;
+  pw_real reduction;
+  pw_solver_counts counts;
+  char text[256];
+};
+
+pw_solver_options pw_solver_defaults(bool symmetric)
 {
-  pw_solver *s = NULL;
-  PW_REQUIRE(threads >= 1, PW_ERR_ARGUMENT, "%d threads for a solver", threads);
-  PW_TRY(pw_mem_alloc("linear solver", 1, sizeof *s, &s));
-  s->symmetric = symmetric;
-  s->threads = threads;
-  s->revision = -1;
-  umfpack_dl_defaults(s->control);
-  s->control[UMFPACK_ORDERING] = UMFPACK_ORDERING_METIS;
-  s->control[UMFPACK_STRATEGY] = UMFPACK_STRATEGY_SYMMETRIC; /* the pattern is */
-  s->control[UMFPACK_IRSTEP] = 1;
-  cholmod_l_start(&s->common);
-  s->common.nmethods = 1;
-  s->common.method[0].ordering = CHOLMOD_METIS;
-  s->common.postorder = 1;
-  s->common.supernodal = CHOLMOD_SUPERNODAL;
-  s->common.final_ll = 1;
-  s->common.print = 0;
-  s->common.try_catch = 1; /* no messages */
-  *out = s;
+  return (pw_solver_options){
+      .engine = PW_SOLVER_AUTO, .symmetric = symmetric, .threads = 1, .least_pivot = 1e-13};
+}
+
+const char *pw_solver_name(pw_solver_engine engine)
+{
+  return engine >= 0 && engine < PW_SOLVER_ENGINES ? engines[engine].name : "unknown";
+}
+
+bool pw_solver_find(const char *name, pw_solver_engine *engine)
+{
+  for (int i = 0; i < PW_SOLVER_ENGINES; i++) {
+    if (strcmp(name, engines[i].name) == 0) {
+      *engine = (pw_solver_engine)i;
+      return true;
+    }
+  }
+  return false;
+}
+
+/* Replaces the engine at work. */
+static pw_status take_engine(pw_solver *s, pw_solver_engine engine)
+{
+  pw_solver_options options = s->options;
+  void *state = NULL;
+  options.engine = engine;
+  PW_TRY(engines[engine].calls->create(&options, &state));
+  if (s->calls) {
+    s->calls->destroy(&s->state);
+  }
+  s->calls = engines[engine].calls;
+  s->state = state;
+  s->chosen = engine;
   return PW_OK;
 }
 
-static void forget(pw_solver *s)
+pw_status pw_solver_create(const pw_solver_options *options, pw_solver **out)
 {
-  umfpack_dl_free_numeric(&s->numeric);
-  umfpack_dl_free_symbolic(&s->symbolic);
-  s->analysed = false;
-  if (s->factor) {
-    cholmod_l_free_factor(&s->factor, &s->common);
+  pw_solver *s = NULL;
+  PW_REQUIRE(options->threads >= 1, PW_ERR_ARGUMENT, "%d threads for a solver", options->threads);
+  PW_REQUIRE(options->engine >= 0 && options->engine < PW_SOLVER_ENGINES, PW_ERR_ARGUMENT,
+             "no solver has number %d", (int)options->engine);
+  PW_TRY(pw_mem_alloc("linear solver", 1, sizeof *s, &s));
+  s->options = *options;
+  s->reduction = 1e-10;
+  pw_status status = PW_OK;
+  if (options->engine != PW_SOLVER_AUTO) {
+    status = take_engine(s, options->engine);
   }
+  if (status != PW_OK) {
+    pw_solver_destroy(&s);
+    return status;
+  }
+  *out = s;
+  return PW_OK;
 }
 
 void pw_solver_destroy(pw_solver **solver)
@@ -67,161 +94,73 @@ void pw_solver_destroy(pw_solver **solver)
   if (!s) {
     return;
   }
-  forget(s);
-  cholmod_l_free_dense(&s->y, &s->common);
-  cholmod_l_free_dense(&s->e, &s->common);
-  cholmod_l_finish(&s->common);
-  pw_mem_free(&s->start);
-  pw_mem_free(&s->col);
+  if (s->calls) {
+    s->calls->destroy(&s->state);
+  }
   pw_mem_free(solver);
 }
 
-/* Row pointers and columns as long integers; room grows by an eighth more than is needed. */
-static pw_status copy_pattern(pw_solver *s, const pw_csr *m)
+static pw_idx most_direct(const pw_solver *s)
 {
-  const pw_off nnz = m->start[m->n];
-  if (m->n + 1 > s->room_rows || nnz > s->room) {
-    pw_mem_free(&s->start);
-    pw_mem_free(&s->col);
-    s->room_rows = s->room = 0;
-    pw_off rows = (pw_off)m->n + 1 + m->n / 8, room = nnz + nnz / 8;
-    PW_TRY(pw_mem_alloc("solver: rows", rows, sizeof *s->start, &s->start));
-    PW_TRY(pw_mem_alloc("solver: columns", room, sizeof *s->col, &s->col));
-    s->room_rows = rows;
-    s->room = room;
-  }
-  for (pw_idx i = 0; i <= m->n; i++) {
-    s->start[i] = m->start[i];
-  }
-  for (pw_off k = 0; k < nnz; k++) {
-    s->col[k] = m->col[k];
-  }
-  s->revision = m->revision;
-  return PW_OK;
+  return s->options.symmetric ? PW_SOLVER_DIRECT_SYMMETRIC : PW_SOLVER_DIRECT_GENERAL;
 }
 
-/* The matrix as CHOLMOD sees it: by columns, of which it reads the upper triangle. */
-static cholmod_sparse as_sparse(const pw_solver *s, const pw_csr *m)
+/* The rule of the header. It looks at the matrix alone, so that a restart chooses alike. */
+static pw_status choose(pw_solver *s, const pw_csr *m)
 {
-  return (cholmod_sparse){.nrow = (size_t)m->n,
-                          .ncol = (size_t)m->n,
-                          .nzmax = (size_t)m->start[m->n],
-                          .p = s->start,
-                          .i = s->col,
-                          .x = m->value,
-                          .stype = 1,
-                          .itype = CHOLMOD_LONG,
-                          .xtype = CHOLMOD_REAL,
-                          .dtype = CHOLMOD_DOUBLE,
-                          .sorted = 1,
-                          .packed = 1};
+  if (s->options.engine != PW_SOLVER_AUTO) {
+    return PW_OK;
+  }
+  pw_solver_engine engine = PW_SOLVER_DIRECT;
+  if (m->n > most_direct(s)) {
+    engine = pw_solver_has_petsc() ? PW_SOLVER_PETSC_ILU : PW_SOLVER_KRYLOV;
+  }
+  return engine == s->chosen ? PW_OK : take_engine(s, engine);
 }
 
-/* PW_RETRY_DIVERGED: not positive definite. */
-static pw_status factor_symmetric(pw_solver *s, const pw_csr *m)
+static void write_text(pw_solver *s, const pw_csr *m)
 {
-  cholmod_sparse a = as_sparse(s, m);
-  if (!s->factor) {
-    s->factor = cholmod_l_analyze(&a, &s->common);
-    s->counts.analyses++;
-    PW_REQUIRE(s->factor, s->common.status == CHOLMOD_OUT_OF_MEMORY ? PW_ERR_MEMORY : PW_ERR_SOLVER,
-               "CHOLMOD: analysis of %d equations fails with %d", (int)m->n, s->common.status);
+  const char *kind = s->options.symmetric ? "symmetric" : "unsymmetric";
+  int used = snprintf(s->text, sizeof s->text, "%s: %s, %d %s equations", pw_solver_name(s->chosen),
+                      s->calls->describe(s->state), (int)m->n, kind);
+  if (s->options.engine == PW_SOLVER_AUTO && used > 0 && (size_t)used < sizeof s->text) {
+    snprintf(s->text + used, sizeof s->text - (size_t)used, " (direct up to %d)",
+             (int)most_direct(s));
   }
-  cholmod_l_factorize(&a, s->factor, &s->common);
-  PW_REQUIRE(s->common.status != CHOLMOD_OUT_OF_MEMORY, PW_ERR_MEMORY,
-             "CHOLMOD: no memory to factor %d equations", (int)m->n);
-  if (s->common.status == CHOLMOD_NOT_POSDEF) {
-    return PW_RETRY_DIVERGED;
-  }
-  PW_REQUIRE(s->common.status == CHOLMOD_OK, PW_ERR_SOLVER,
-             "CHOLMOD: factorisation of %d equations ends with %d", (int)m->n, s->common.status);
-  s->counts.factor_nonzeros = (pw_off)s->common.lnz;
-  return PW_OK;
-}
-
-/* UMFPACK takes columns: our rows are the columns of the transpose. */
-static pw_status factor_general(pw_solver *s, const pw_csr *m)
-{
-  long rc = UMFPACK_OK;
-  if (!s->analysed) {
-    rc = umfpack_dl_symbolic(m->n, m->n, s->start, s->col, m->value, &s->symbolic, s->control,
-                             s->info);
-    s->counts.analyses++;
-    PW_REQUIRE(rc == UMFPACK_OK, rc == UMFPACK_ERROR_out_of_memory ? PW_ERR_MEMORY : PW_ERR_SOLVER,
-               "UMFPACK: analysis of %d equations fails with %ld", (int)m->n, rc);
-    s->analysed = true;
-  }
-  umfpack_dl_free_numeric(&s->numeric);
-  rc =
-      umfpack_dl_numeric(s->start, s->col, m->value, s->symbolic, &s->numeric, s->control, s->info);
-  PW_REQUIRE(rc != UMFPACK_ERROR_out_of_memory, PW_ERR_MEMORY,
-             "UMFPACK: no memory to factor %d equations", (int)m->n);
-  PW_REQUIRE(rc != UMFPACK_WARNING_singular_matrix, PW_RETRY_DIVERGED,
-             "UMFPACK: the matrix of %d equations is singular", (int)m->n);
-  PW_REQUIRE(rc == UMFPACK_OK, PW_ERR_SOLVER,
-             "UMFPACK: factorisation of %d equations ends with %ld", (int)m->n, rc);
-  s->counts.factor_nonzeros = (pw_off)(s->info[UMFPACK_LNZ] + s->info[UMFPACK_UNZ]);
-  return PW_OK;
 }
 
 pw_status pw_solver_factor(pw_solver *s, const pw_csr *m)
 {
   PW_REQUIRE(m->n > 0, PW_ERR_ARGUMENT, "a matrix of %d equations", (int)m->n);
-  if (&openblas_set_num_threads) {
-    openblas_set_num_threads(s->threads);
-  }
-  if (s->revision != m->revision) {
-    forget(s);
-    PW_TRY(copy_pattern(s, m));
-  }
-  s->counts.factors++;
-  s->in_umfpack = !s->symmetric;
-  if (s->symmetric) {
-    pw_status status = factor_symmetric(s, m);
-    if (status != PW_RETRY_DIVERGED) {
-      return status;
-    }
-    s->counts.indefinite++;
-    s->in_umfpack = true;
-  }
-  return factor_general(s, m);
+  PW_TRY(choose(s, m));
+  write_text(s, m);
+  return s->calls->factor(s->state, m, &s->counts);
 }
 
-static pw_status solve_symmetric(pw_solver *s, const pw_csr *m, const pw_real *b, pw_real *x)
+void pw_solver_aim(pw_solver *s, pw_real reduction)
 {
-  cholmod_dense right = {.nrow = (size_t)m->n,
-                         .ncol = 1,
-                         .nzmax = (size_t)m->n,
-                         .d = (size_t)m->n,
-                         .x = (void *)b, /* read only */
-                         .xtype = CHOLMOD_REAL,
-                         .dtype = CHOLMOD_DOUBLE};
-  cholmod_dense left = right, *out = &left;
-  left.x = x;
-  int ok =
-      cholmod_l_solve2(CHOLMOD_A, s->factor, &right, NULL, &out, NULL, &s->y, &s->e, &s->common);
-  PW_REQUIRE(ok && out == &left, PW_ERR_SOLVER, "CHOLMOD: solution of %d equations ends with %d",
-             (int)m->n, s->common.status);
-  return PW_OK;
+  s->reduction = reduction;
 }
 
 pw_status pw_solver_solve(pw_solver *s, const pw_csr *m, const pw_real *b, pw_real *x)
 {
-  PW_REQUIRE(s->revision == m->revision, PW_ERR_ARGUMENT, "this matrix has not been factored");
-  if (s->in_umfpack) {
-    long rc = umfpack_dl_solve(UMFPACK_Aat, s->start, s->col, m->value, x, b, s->numeric,
-                               s->control, s->info);
-    PW_REQUIRE(rc == UMFPACK_OK, PW_ERR_SOLVER, "UMFPACK: solution of %d equations ends with %ld",
-               (int)m->n, rc);
-  } else {
-    PW_TRY(solve_symmetric(s, m, b, x));
-  }
+  PW_REQUIRE(s->calls, PW_ERR_ARGUMENT, "a solver without a matrix");
+  PW_TRY(s->calls->solve(s->state, m, s->reduction, b, x, &s->counts));
+  s->counts.solves++;
+  s->counts.iterations += s->counts.last;
   pw_real sum = 0.0;
   for (pw_idx i = 0; i < m->n; i++) {
     sum += x[i];
   }
   PW_REQUIRE(isfinite(sum), PW_RETRY_NAN, "the solution of %d equations is no number", (int)m->n);
   return PW_OK;
+}
+
+void pw_solver_forget(pw_solver *s)
+{
+  if (s->calls) {
+    s->calls->forget(s->state);
+  }
 }
 
 pw_solver_counts pw_solver_counted(const pw_solver *s)
@@ -231,5 +170,34 @@ pw_solver_counts pw_solver_counted(const pw_solver *s)
 
 const char *pw_solver_describe(const pw_solver *s)
 {
-  return s->symmetric ? "CHOLMOD (supernodal L L^T, METIS)" : "UMFPACK (multifrontal L U, METIS)";
+  return s->calls ? s->text : "no matrix yet";
+}
+
+/* Memory that Linux says can be had without swapping; 0: unknown. */
+static pw_off bytes_available(void)
+{
+  long long kib = 0;
+  char line[128];
+  FILE *f = fopen("/proc/meminfo", "r");
+  while (f && kib == 0 && fgets(line, sizeof line, f)) {
+    if (sscanf(line, "MemAvailable: %lld kB", &kib) != 1) {
+      kib = 0;
+    }
+  }
+  if (f) {
+    fclose(f);
+  }
+  return (pw_off)kib * 1024;
+}
+
+pw_status pw_solver_check_memory(const char *what, const pw_csr *m, pw_off bytes, pw_off most)
+{
+  const pw_off room = most > 0 ? most : bytes_available();
+  const pw_off other = pw_solver_petsc_bytes(m);
+  PW_REQUIRE(room == 0 || bytes <= room, PW_ERR_MEMORY,
+             "%s: the factor of %d equations needs about %.3g GB, %.3g GB can be had: petsc_ilu "
+             "would need about %.2g GB%s",
+             what, (int)m->n, 1e-9 * (double)bytes, 1e-9 * (double)room, 1e-9 * (double)other,
+             other > room ? ", too much as well" : "");
+  return PW_OK;
 }

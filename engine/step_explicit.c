@@ -6,6 +6,7 @@
 #include "engine/assemble.h"
 #include "engine/fbar.h"
 #include "engine/ranges.h"
+#include "engine/rates.h"
 #include "engine/structure_sim.h"
 #include "engine/update.h"
 
@@ -51,21 +52,35 @@ static pw_status constrain(pw_sim *sim, pw_stage stage, int slot)
 static void force_stress(pw_sim *sim)
 {
   if (sim->fbar) {
+    const pw_blocks *blocks = pw_rates_starting(sim);
     pw_fbar_clear(sim);
-    pw_assemble_coloured(&sim->blocks, sim->threads, pw_block_fbar_sum, sim);
-    pw_for_blocks(&sim->blocks, sim->threads, pw_block_fbar_stress, sim);
+    pw_assemble_coloured(blocks, sim->threads, pw_block_fbar_sum, sim);
+    pw_for_blocks(blocks, sim->threads, pw_block_fbar_stress, sim);
   }
 }
 
 /* Loops over the nodes run inside the parallel regions of the scatters before or after them. */
 static void clear_nodes(void *ctx, int part, int parts)
 {
-  pw_nodes_clear_part(&((pw_sim *)ctx)->nodes, part, parts);
+  pw_sim *sim = ctx;
+  pw_nodes_clear_part(&sim->nodes, part, parts);
+  if (sim->rates) {
+    pw_rates_clear_part(sim, part, parts);
+  }
+}
+
+static void add_held(void *ctx, int part, int parts)
+{
+  pw_rates_add_part(ctx, part, parts);
 }
 
 static void increment_nodes(void *ctx, int part, int parts)
 {
-  pw_nodes_increment_part(&((pw_sim *)ctx)->nodes, part, parts);
+  pw_sim *sim = ctx;
+  pw_nodes_increment_part(&sim->nodes, part, parts);
+  if (sim->rates) {
+    pw_rates_increment_part(sim, part, parts);
+  }
 }
 
 static void remap_nodes(void *ctx, int part, int parts)
@@ -76,8 +91,9 @@ static void remap_nodes(void *ctx, int part, int parts)
 /* Scatter onto cleared nodes. */
 static void scatter(pw_sim *sim, pw_block_fn block)
 {
+  const pw_pass pass = {clear_nodes, block, sim->rates ? add_held : NULL, false};
   force_stress(sim);
-  pw_assemble_pass(&sim->blocks, sim->threads, &(pw_pass){clear_nodes, block, NULL, false}, sim);
+  pw_assemble_pass(pw_rates_starting(sim), sim->threads, &pass, sim);
 }
 
 /* Points to grid, forces, new nodal velocities under all constraints. */
@@ -101,9 +117,9 @@ static void update_points(pw_sim *sim, pw_update_pass *pass)
 {
   if (sim->fbar && pass->stress) {
     pw_fbar_clear(sim);
-    pw_assemble_coloured(&sim->blocks, sim->threads, pw_block_fbar_gather, pass);
+    pw_assemble_coloured(pw_rates_ending(sim), sim->threads, pw_block_fbar_gather, pass);
   }
-  pw_for_blocks(&sim->blocks, sim->threads, pw_block_update, pass);
+  pw_for_blocks(pw_rates_ending(sim), sim->threads, pw_block_update, pass);
 }
 
 /* USF: stress from the velocities at the start of the step. */
@@ -127,7 +143,7 @@ static pw_status remap_velocity(pw_sim *sim, double *clock)
   const bool alone = pw_schedule_count(sim, PW_STAGE_REMAP_P2G) == 0;
   const pw_pass pass = {increment_nodes, pw_block_velocity_remap, alone ? remap_nodes : NULL,
                         false};
-  pw_assemble_pass(&sim->blocks, sim->threads, &pass, sim);
+  pw_assemble_pass(pw_rates_ending(sim), sim->threads, &pass, sim);
   lap(sim, PW_TIMER_REMAP, clock);
   if (!alone) {
     PW_TRY(pw_schedule_run(sim, PW_STAGE_REMAP_P2G));
@@ -149,7 +165,7 @@ pw_status pw_step_explicit(pw_sim *sim)
   if (sim->sort_needed) {
     PW_TRY(pw_update_sort(sim));
     lap(sim, PW_TIMER_SORT, &clock);
-  } else if (sim->step % REBALANCE == 1) {
+  } else if (sim->step % REBALANCE == 1 && !sim->rates) {
     pw_ranges_balance(sim);
   }
   pw_structures_clear(sim);

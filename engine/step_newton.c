@@ -6,46 +6,67 @@
 #include <string.h>
 
 #include "engine/core/mem.h"
-
-static const pw_real hopeless = 1e8; /* a residual this far above the first ends a part */
-
-struct pw_newton {
-  pw_tet_model *model;
-  pw_newton_options options;
-  pw_solver *solver;
-  size_t dofs;       /* 3 nnode */
-  pw_real *u;        /* [3][nnode] displacement over the part at hand */
-  pw_real *previous; /* [3][nnode] displacement over the part before, per unit of t */
-  bool has_previous;
-  pw_real *unbalanced;    /* [3][nnode] R0 times 1 - alpha */
-  pw_real *right, *delta; /* [3 nnode] by equation */
-  pw_real floor;          /* residual that rounding may leave */
-};
+#include "engine/newton_part.h"
 
 pw_newton_options pw_newton_defaults(void)
 {
-  return (pw_newton_options){
-      .tolerance = 1e-9, .max_iterations = 20, .max_cuts = 10, .from_previous = true};
+  return (pw_newton_options){.tolerance = 1e-9,
+                             .max_iterations = 20,
+                             .max_cuts = 10,
+                             .from_previous = true,
+                             .approach = 4,
+                             .volume_limit = 10.0,
+                             .mechanisms = PW_MECHANISMS_WARN};
 }
 
 static pw_status allocate(pw_newton *n)
 {
   const pw_off dofs = (pw_off)n->dofs;
+  const pw_newton_options *o = &n->options;
   PW_TRY(pw_mem_alloc("newton: displacement", dofs, sizeof *n->u, &n->u));
   PW_TRY(pw_mem_alloc("newton: displacement before", dofs, sizeof *n->previous, &n->previous));
+  PW_TRY(pw_mem_alloc("newton: start out of balance", dofs, sizeof *n->rest, &n->rest));
   PW_TRY(pw_mem_alloc("newton: unbalanced", dofs, sizeof *n->unbalanced, &n->unbalanced));
   PW_TRY(pw_mem_alloc("newton: right-hand side", dofs, sizeof *n->right, &n->right));
   PW_TRY(pw_mem_alloc("newton: correction", dofs, sizeof *n->delta, &n->delta));
-  return pw_solver_create(n->model->fbar == PW_FBAR_NONE, 1, &n->solver);
+  if (o->approach > 0) {
+    PW_TRY(pw_mem_alloc("newton: way to a part", dofs, sizeof *n->way, &n->way));
+  }
+  if (o->line_search > 0) {
+    PW_TRY(pw_mem_alloc("newton: line search", dofs, sizeof *n->tried, &n->tried));
+  }
+  if (o->newmark.on) {
+    PW_TRY(pw_tet_rates_create(n->model, &o->newmark, &n->rates));
+  } else if (o->mechanisms != PW_MECHANISMS_IGNORE) {
+    PW_TRY(pw_mechanism_create(n->model, &n->mechanism));
+  }
+  pw_solver_options solver = pw_solver_defaults(pw_tet_model_is_symmetric(n->model));
+  solver.engine = o->solver;
+  solver.x = n->model->mesh->x;
+  if (o->mechanisms != PW_MECHANISMS_ERROR) { /* such a matrix is singular, but its equations agree */
+    solver.least_pivot = 0.0;
+  }
+  return pw_solver_create(&solver, &n->solver);
+}
+
+static pw_status check_options(const pw_newton_options *o)
+{
+  PW_REQUIRE(o->tolerance > 0.0 && o->max_iterations >= 1 &&
+                 o->max_iterations <= PW_NEWTON_HISTORY && o->max_cuts >= 0 && o->max_cuts <= 40,
+             PW_ERR_ARGUMENT, "a Newton iteration to %g in %d steps with %d cuts", o->tolerance,
+             o->max_iterations, o->max_cuts);
+  PW_REQUIRE(o->approach >= 0 && o->approach <= 20 && o->line_search >= 0 && o->line_search <= 20 &&
+                 o->volume_limit > 1.0,
+             PW_ERR_ARGUMENT,
+             "a Newton iteration with %d halvings of the way, %d of a correction, volumes changing "
+             "by factors up to %g",
+             o->approach, o->line_search, o->volume_limit);
+  return PW_OK;
 }
 
 pw_status pw_newton_create(pw_tet_model *model, const pw_newton_options *options, pw_newton **out)
 {
-  PW_REQUIRE(options->tolerance > 0.0 && options->max_iterations >= 1 &&
-                 options->max_iterations <= PW_NEWTON_HISTORY && options->max_cuts >= 0 &&
-                 options->max_cuts <= 40,
-             PW_ERR_ARGUMENT, "a Newton iteration to %g in %d steps with %d cuts",
-             options->tolerance, options->max_iterations, options->max_cuts);
+  PW_TRY(check_options(options));
   pw_newton *n = NULL;
   PW_TRY(pw_mem_alloc("newton", 1, sizeof *n, &n));
   n->model = model;
@@ -67,9 +88,16 @@ void pw_newton_destroy(pw_newton **newton)
     return;
   }
   pw_solver_destroy(&n->solver);
+  if (n->options.newmark.on) {
+    pw_tet_rates_destroy(n->model, &n->rates);
+  }
+  pw_mechanism_destroy(&n->mechanism);
   pw_mem_free(&n->u);
   pw_mem_free(&n->previous);
+  pw_mem_free(&n->rest);
   pw_mem_free(&n->unbalanced);
+  pw_mem_free(&n->way);
+  pw_mem_free(&n->tried);
   pw_mem_free(&n->right);
   pw_mem_free(&n->delta);
   pw_mem_free(newton);
@@ -80,137 +108,50 @@ const pw_real *pw_newton_displacement(const pw_newton *n)
   return n->u;
 }
 
+pw_tet_rates *pw_newton_rates(pw_newton *n)
+{
+  return n->options.newmark.on ? &n->rates : NULL;
+}
+
 const pw_solver *pw_newton_solver(const pw_newton *n)
 {
   return n->solver;
 }
 
-/* Right-hand side from what is left at free components, and its norm over that of all loads. */
-static pw_real residual(pw_newton *n)
+static pw_status find_mechanisms(pw_newton *n, pw_newton_report *report)
 {
-  const pw_tet_model *m = n->model;
-  pw_real left = 0.0, load = 0.0;
-  for (size_t i = 0; i < n->dofs; i++) {
-    const pw_idx eq = m->equation[i];
-    pw_real r = m->external[i] + n->unbalanced[i] - m->force[i];
-    if (eq >= 0) {
-      n->right[eq] = r;
-      left += r * r;
-      load += m->external[i] * m->external[i];
-    } else { /* a reaction */
-      load += m->fixed[i] ? m->force[i] * m->force[i] : 0.0;
-    }
-  }
-  if (!(load > 0.0)) { /* nothing acts: all that may be left is rounding */
-    n->floor = 0.0;
-    return sqrt(left) <= m->rounding ? 0.0 : INFINITY;
-  }
-  n->floor = m->rounding / sqrt(load);
-  return sqrt(left / load);
-}
-
-static pw_status correct(pw_newton *n)
-{
-  const pw_tet_model *m = n->model;
-  if (m->csr.n == 0) {
+  const pw_mechanism_report *r = &report->mechanisms;
+  if (!n->mechanism.piece) {
     return PW_OK;
   }
-  PW_TRY(pw_solver_factor(n->solver, &m->csr));
-  PW_TRY(pw_solver_solve(n->solver, &m->csr, n->right, n->delta));
-  for (size_t i = 0; i < n->dofs; i++) {
-    n->u[i] += m->equation[i] >= 0 ? n->delta[m->equation[i]] : 0.0;
-  }
+  pw_mechanism_find(n->model, &n->mechanism, &report->mechanisms);
+  PW_REQUIRE(r->free == 0 || n->options.mechanisms != PW_MECHANISMS_ERROR, PW_ERR_SCENE,
+             "%d groups of elements with points, %d elements in all, hang on the rest by less than "
+             "three nodes not in a line or on nothing; the first, of element %d, can move in %d "
+             "ways without strain",
+             (int)r->free, (int)r->elements, (int)r->first, (int)r->motions);
   return PW_OK;
-}
-
-static void prescribe(pw_newton *n)
-{
-  const pw_tet_model *m = n->model;
-  for (size_t i = 0; i < n->dofs; i++) {
-    n->u[i] = m->fixed[i] ? m->prescribed[i] : n->u[i];
-  }
-}
-
-/* First guess from the tangent at the start: free nodes follow the prescribed ones linearly. */
-static pw_status predict(pw_newton *n)
-{
-  const pw_tet_model *m = n->model;
-  residual(n);
-  for (size_t i = 0; i < n->dofs; i++) {
-    if (m->equation[i] >= 0) {
-      n->right[m->equation[i]] -= m->lift[i];
-    }
-  }
-  PW_TRY(correct(n));
-  prescribe(n);
-  return PW_OK;
-}
-
-/* First guess. Where the part is not the rest of the step, or nothing better is known, the forces
- * and the tangent at the start are needed. */
-static pw_status start_part(pw_newton *n, const pw_newton_load *load, pw_real t0, pw_real t1)
-{
-  pw_tet_model *m = n->model;
-  const pw_real alpha = (t1 - t0) / (1.0 - t0);
-  const bool whole = t1 >= 1.0, guess = n->options.from_previous && n->has_previous;
-  memset(n->u, 0, n->dofs * sizeof *n->u);
-  memset(n->unbalanced, 0, n->dofs * sizeof *n->unbalanced);
-  load->apply(load->ctx, m, t0, t1);
-  if (!whole || !guess) {
-    PW_TRY(pw_tet_model_evaluate(m, n->u, !guess));
-  }
-  if (!whole) { /* loads are taken to grow from their values at t0 */
-    load->apply(load->ctx, m, t0, t0);
-    for (size_t i = 0; i < n->dofs; i++) {
-      n->unbalanced[i] = m->equation[i] >= 0 ? (1.0 - alpha) * (m->force[i] - m->external[i]) : 0.0;
-    }
-    load->apply(load->ctx, m, t0, t1);
-  }
-  if (!guess) {
-    return predict(n);
-  }
-  for (size_t i = 0; i < n->dofs; i++) {
-    n->u[i] = m->equation[i] >= 0 ? (t1 - t0) * n->previous[i] : 0.0;
-  }
-  prescribe(n);
-  return PW_OK;
-}
-
-/* One part: PW_OK with u at balance, or a positive code where a smaller part may help. */
-static pw_status solve_part(pw_newton *n, const pw_newton_load *load, const pw_real *t,
-                            pw_newton_report *report)
-{
-  report->count = 0;
-  PW_TRY(start_part(n, load, t[0], t[1]));
-  for (;;) {
-    PW_TRY(pw_tet_model_evaluate(n->model, n->u, true));
-    pw_real r = residual(n);
-    report->residual[report->count++] = r;
-    if (r <= pw_max(n->options.tolerance, n->floor)) {
-      return PW_OK;
-    }
-    PW_REQUIRE(r <= hopeless * report->residual[0], PW_RETRY_DIVERGED,
-               "the residual is %g after %d iterations", r, report->count - 1);
-    PW_REQUIRE(report->count < n->options.max_iterations, PW_RETRY_DIVERGED,
-               "the residual is %g after %d iterations", r, report->count - 1);
-    report->iterations++;
-    PW_TRY(correct(n));
-  }
 }
 
 /* A converged part becomes the past. */
 static pw_status finish_part(pw_newton *n, const pw_newton_load *load, const pw_real *t)
 {
+  if (n->options.newmark.on) {
+    pw_tet_rates_commit(n->model, &n->rates);
+  }
   pw_tet_model_commit(n->model, n->u);
   for (size_t i = 0; i < n->dofs; i++) {
     n->previous[i] = n->u[i] / (t[1] - t[0]);
   }
   n->has_previous = true;
+  if (load->converged) {
+    load->converged(load->ctx, n->model, t[1]);
+  }
   return load->move ? load->move(load->ctx, n->model, t[1]) : PW_OK;
 }
 
 /* The error record names the residuals of the last attempt. */
-static pw_status give_up(const pw_newton_report *report, const pw_real *t)
+static pw_status give_up(const pw_newton_report *report, const pw_real *t, const char *more)
 {
   char text[256] = "", reason[256];
   size_t used = 0;
@@ -219,9 +160,36 @@ static pw_status give_up(const pw_newton_report *report, const pw_real *t)
     used += (size_t)snprintf(text + used, sizeof text - used, " %.2e", report->residual[i]);
   }
   return pw_error_set(PW_RETRY_DIVERGED, __FILE__, __LINE__, __func__,
-                      "no balance between t = %g and %g of a load step after %d cuts (%s); "
+                      "no balance between t = %g and %g of a load step after %d cuts (%s)%s; "
                       "residuals:%s",
-                      t[0], t[1], report->cuts, reason, text);
+                      t[0], t[1], report->cuts, reason, more, text);
+}
+
+/* Whether putting the mesh back in between changes what moves the body. */
+static bool is_driven(const pw_newton *n, const pw_newton_load *load)
+{
+  bool driven = false;
+  for (size_t i = 0; i < n->dofs && !load->move; i++) {
+    driven = driven || (n->model->fixed[i] && n->model->prescribed[i] != 0.0);
+  }
+  return driven;
+}
+
+/* After a failure: a smaller part is to follow, or else what ends the step. */
+static pw_status cut(pw_newton *n, const pw_newton_load *load, const pw_real *t, int cuts,
+                     pw_newton_report *report)
+{
+  if (cuts == n->options.max_cuts) {
+    return give_up(report, t, "");
+  }
+  if (!n->options.cut_driven && is_driven(n, load)) {
+    return give_up(report, t,
+                   ", and a cut would put the mesh back under its driven nodes: move the mesh with "
+                   "them, take smaller steps, or allow cut_driven");
+  }
+  n->has_previous = false;
+  report->cuts++;
+  return PW_OK;
 }
 
 pw_status pw_newton_step(pw_newton *n, const pw_newton_load *load, pw_newton_report *report)
@@ -229,10 +197,13 @@ pw_status pw_newton_step(pw_newton *n, const pw_newton_load *load, pw_newton_rep
   pw_real t[2] = {0.0, 1.0}, size = 1.0;
   int cuts = 0;
   *report = (pw_newton_report){.last = PW_OK};
+  PW_REQUIRE(!n->options.newmark.on || load->step_s > 0.0, PW_ERR_ARGUMENT,
+             "a dynamic step of %g s", load->step_s);
   while (t[0] < 1.0) {
     t[1] = t[0] + size < 1.0 - 1e-9 ? t[0] + size : 1.0;
     PW_TRY(pw_tet_model_begin(n->model));
-    pw_status s = solve_part(n, load, t, report);
+    PW_TRY(find_mechanisms(n, report));
+    pw_status s = pw_newton_solve_part(n, load, t, report);
     if (s == PW_OK) {
       PW_TRY(finish_part(n, load, t));
       t[0] = t[1];
@@ -245,13 +216,55 @@ pw_status pw_newton_step(pw_newton *n, const pw_newton_load *load, pw_newton_rep
     if (s < 0) {
       return s;
     }
-    if (cuts == n->options.max_cuts) {
-      return give_up(report, t);
-    }
-    n->has_previous = false;
+    PW_TRY(cut(n, load, t, cuts, report));
     size = 0.5 * (t[1] - t[0]);
     cuts++;
-    report->cuts++;
   }
+  return PW_OK;
+}
+
+/* A step of a course as a load from 0 to 1. */
+static void apply_course(void *ctx, pw_tet_model *model, pw_real t0, pw_real t1)
+{
+  const pw_newton_course *c = ctx;
+  c->apply(c->ctx, model, c->now + t0 * c->size, c->now + t1 * c->size);
+}
+
+static pw_status move_course(void *ctx, pw_tet_model *model, pw_real t1)
+{
+  const pw_newton_course *c = ctx;
+  return c->move(c->ctx, model, c->now + t1 * c->size);
+}
+
+pw_real pw_newton_next_size(const pw_newton_course *c, pw_real size, const pw_newton_report *report)
+{
+  const bool hard = report->cuts > 0 || report->approaches > 0 || report->iterations >= c->hard;
+  const pw_real factor = hard ? c->shrink : report->iterations <= c->easy ? c->grow : 1.0;
+  return pw_max(c->least, pw_min(c->most, factor * size));
+}
+
+pw_status pw_newton_advance(pw_newton *n, pw_newton_course *c, pw_newton_report *report)
+{
+  const pw_real left = c->end - c->now;
+  pw_newton_course step = *c;
+  *report = (pw_newton_report){.last = PW_OK};
+  PW_REQUIRE(left > 0.0 && c->least > 0.0 && c->least <= c->most && c->easy < c->hard &&
+                 c->grow >= 1.0 && c->shrink > 0.0 && c->shrink <= 1.0,
+             PW_ERR_ARGUMENT,
+             "a course from %g to %g s in steps of %g to %g s, growing by %g up to %d iterations, "
+             "shrinking by %g from %d on",
+             c->now, c->end, c->least, c->most, c->grow, c->easy, c->shrink, c->hard);
+  step.size = pw_max(c->least, pw_min(c->most, c->size));
+  const pw_real wanted = step.size;
+  const bool last = step.size > (1.0 - 1e-9) * left;
+  step.size = last ? left : step.size;
+  const pw_newton_load load = {.ctx = &step,
+                               .start_s = step.now,
+                               .step_s = step.size,
+                               .apply = apply_course,
+                               .move = c->move ? move_course : NULL};
+  PW_TRY(pw_newton_step(n, &load, report));
+  c->now = last ? c->end : c->now + step.size;
+  c->size = pw_newton_next_size(c, wanted, report);
   return PW_OK;
 }

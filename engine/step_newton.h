@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /**
  * @file engine/step_newton.h
- * @brief Quasi-static load steps by Newton's method, halved where they do not converge (layer 3).
+ * @brief Load steps by Newton's method, quasi-static or dynamic, halved where they do not converge
+ *        (layer 3).
  *
  * A load step runs from t = 0 to t = 1. Every part of it from t0 to t1 is a step of its own: points
  * find their elements, u is solved for, points move, and the mesh is put back or moved. Points that
@@ -10,27 +11,43 @@
  *
  *   f_int(u) - f_ext(t1) = (1 - alpha) R0,   R0 = f_int(0) - f_ext(t0),  alpha = (t1 - t0)/(1 - t0),
  *
- * and the last part, with alpha = 1, restores balance.
+ * and the last part, with alpha = 1, restores balance. In a dynamic step inertia takes R0 up.
  *
- * The residual is the norm of what is left at free components over the norm of reactions and
- * external forces together, as AMPLE does (Coombs, Augarde, Adv. Engng Software 142 (2020) 102748).
- * Strains smaller than about 1e-6 leave more than a small tolerance allows, by rounding alone: an
- * estimate of that (pw_tet_model.rounding) counts as converged too.
+ * A part that does not converge is first approached: the same equations are solved for s = 1/2,
+ * 1/4, ... of its load, each from the solution before, until s = 1. Nothing is committed on the way,
+ * so the result is that of the part in one piece. Only when that fails too is the part cut. A cut
+ * puts the mesh back in between, which changes what a driven boundary is tied to unless the mesh
+ * moves along: without load->move a part whose nodes are driven is not cut unless asked for.
+ *
+ * The residual is the norm of what is left at free components over the norm of reactions, external
+ * forces and inertia together, as AMPLE does (Coombs, Augarde, Adv. Engng Software 142 (2020)
+ * 102748). Strains smaller than about 1e-6 leave more than a small tolerance allows, by rounding
+ * alone: an estimate of that (pw_tet_model.rounding) counts as converged too.
  */
 #ifndef PW_ENGINE_STEP_NEWTON_H
 #define PW_ENGINE_STEP_NEWTON_H
 
 #include "engine/solver.h"
+#include "engine/tet_inertia.h"
+#include "engine/tet_mechanism.h"
 #include "engine/tet_model.h"
 
 enum { PW_NEWTON_HISTORY = 64 }; /**< residuals kept of a part */
 
 /** How to iterate. */
 typedef struct pw_newton_options {
-  pw_real tolerance;  /**< of the residual; 1e-9 */
-  int max_iterations; /**< of a part, at most PW_NEWTON_HISTORY; 20 */
-  int max_cuts;       /**< halvings of a part in a row; 10 */
-  bool from_previous; /**< start from the increment before, scaled, where that converged */
+  pw_real tolerance;    /**< of the residual; 1e-9 */
+  int max_iterations;   /**< of a part, at most PW_NEWTON_HISTORY; 20 */
+  int max_cuts;         /**< halvings of a part in a row; 10 */
+  bool from_previous;   /**< start from the increment before, scaled, where that converged */
+  int approach;         /**< halvings of the way to a part that fails; 0: cut at once; 4 */
+  int line_search;      /**< halvings of a correction that leaves a larger residual; 0: none; 0 */
+  bool cut_driven;      /**< cut also where nodes are driven and the mesh is put back */
+  pw_real volume_limit; /**< a part in which an element with points changes its volume by more
+                                 than this factor counts as failed; 10 */
+  pw_mechanisms mechanisms; /**< what to do about pieces that nothing holds; quasi-static; warn */
+  pw_newmark newmark;       /**< dynamics; off */
+  pw_solver_engine solver;  /**< of the linear systems; automatic */
 } pw_newton_options;
 
 /** @brief The values named above. */
@@ -39,8 +56,14 @@ pw_newton_options pw_newton_defaults(void);
 /** Load of a step. */
 typedef struct pw_newton_load {
   void *ctx;
+  pw_real start_s; /**< time at t = 0; s */
+  pw_real step_s;  /**< from there to t = 1, for materials that know time and for dynamics, which
+                        must have it; 0: 1 s; s */
   /** @brief Fill model->prescribed for the part from t0 to t1, and model->external at t1. */
   void (*apply)(void *ctx, pw_tet_model *model, pw_real t0, pw_real t1);
+  /** @brief Look at a part that has converged at t1, forces and points as they are then, the mesh not
+   *  yet moved; may be NULL. */
+  void (*converged)(void *ctx, pw_tet_model *model, pw_real t1);
   /** @brief Move the mesh to where it belongs at t1; NULL: it is put back. @return PW_OK or what
    *  ends the run. */
   pw_status (*move)(void *ctx, pw_tet_model *model, pw_real t1);
@@ -50,10 +73,13 @@ typedef struct pw_newton_load {
 typedef struct pw_newton_report {
   int parts;      /**< converged parts: 1 without cuts */
   int cuts;       /**< failures that halved a part */
+  int approaches; /**< parts that were approached */
+  int searches;   /**< halvings of corrections */
   int iterations; /**< solutions of all parts, failed ones too */
   int count;      /**< residuals of the last part, those of a failed part after a failure */
   pw_real residual[PW_NEWTON_HISTORY];
-  pw_status last; /**< why the last cut was made, or PW_OK */
+  pw_status last;                 /**< why the last cut was made, or PW_OK */
+  pw_mechanism_report mechanisms; /**< of the last part; zero when not looked for */
 } pw_newton_report;
 
 typedef struct pw_newton pw_newton;
@@ -71,14 +97,42 @@ void pw_newton_destroy(pw_newton **n);
 /**
  * @brief One load step.
  * @param[out] report filled whatever happens
- * @return PW_OK; PW_RETRY_DIVERGED when a part fails max_cuts times in a row, with the residuals in
- *         the error record: the model stands at the end of its last converged part;
- *         PW_ERR_POINT_LOST, PW_ERR_SOLVER, PW_ERR_MEMORY, or what load->move gives.
+ * @return PW_OK; PW_RETRY_DIVERGED when a part fails max_cuts times in a row or may not be cut, with
+ *         the residuals in the error record: the model stands at the end of its last converged part;
+ *         PW_ERR_POINT_LOST, PW_ERR_SOLVER, PW_ERR_MEMORY, or what load->move gives; PW_ERR_SCENE
+ *         for a free mechanism where those are errors; PW_ERR_ARGUMENT for dynamics without step_s.
  */
 pw_status pw_newton_step(pw_newton *n, const pw_newton_load *load, pw_newton_report *report);
 
+/** A load over time, in steps whose size follows the work they make. */
+typedef struct pw_newton_course {
+  void *ctx;
+  /** @brief As in pw_newton_load, between two times in s. */
+  void (*apply)(void *ctx, pw_tet_model *model, pw_real from, pw_real to);
+  pw_status (*move)(void *ctx, pw_tet_model *model, pw_real to); /**< or NULL */
+  pw_real now, end;                                              /**< s; now is moved on */
+  pw_real size;                                                  /**< of the next step; s */
+  pw_real least, most;                                           /**< bounds of size; s */
+  int easy, hard;       /**< iterations: up to easy the next step grows, from hard on it shrinks */
+  pw_real grow, shrink; /**< factors; 1.5 and 0.5 */
+} pw_newton_course;
+
+/** @brief The rule of pw_newton_advance(): size after a step that took what @p report says. A step
+ *  that was cut or approached is hard. */
+pw_real pw_newton_next_size(const pw_newton_course *c, pw_real size,
+                            const pw_newton_report *report);
+
+/**
+ * @brief One load step of c->size, or what is left to the end; then c->now and c->size are moved on.
+ * @return as pw_newton_step(); after a failure c is as it was.
+ */
+pw_status pw_newton_advance(pw_newton *n, pw_newton_course *c, pw_newton_report *report);
+
 /** @brief Displacement of the nodes over the last part [3][nnode]; m. */
 const pw_real *pw_newton_displacement(const pw_newton *n);
+
+/** @brief Rates of the nodes, or NULL when quasi-static. */
+pw_tet_rates *pw_newton_rates(pw_newton *n);
 
 /** @brief The solver, for its counts. */
 const pw_solver *pw_newton_solver(const pw_newton *n);

@@ -6,6 +6,8 @@
 
 #include "engine/assemble.h"
 #include "engine/core/mem.h"
+#include "engine/tet_ghost.h"
+#include "engine/tet_inertia.h"
 #include "engine/tet_patch.h"
 
 /* Logarithmic strains come from exponentials near 1, whose last digit is this large. */
@@ -32,7 +34,11 @@ void pw_tet_model_destroy(pw_tet_model *m)
   pw_mem_free(&m->lift);
   pw_mem_free(&m->stiff);
   pw_mem_free(&m->bad);
+  pw_mem_free(&m->why);
   pw_mem_free(&m->chunk);
+  pw_mem_free(&m->mass);
+  pw_mem_free(&m->ghost.face);
+  pw_mem_free(&m->ghost.cut);
   memset(m, 0, sizeof *m);
 }
 
@@ -48,11 +54,17 @@ static pw_status allocate(pw_tet_model *m)
   PW_TRY(pw_mem_alloc("nodes: external force", n, sizeof *m->external, &m->external));
   PW_TRY(pw_mem_alloc("nodes: equations", n, sizeof *m->equation, &m->equation));
   PW_TRY(pw_mem_alloc("nodes: new equations", n, sizeof *m->numbered, &m->numbered));
+  PW_TRY(pw_mem_alloc("nodes: mass", n / 3, sizeof *m->mass, &m->mass));
+  if (m->ghost.gamma > 0.0) {
+    PW_TRY(pw_mem_alloc("ghost: faces", 2 * nelem, sizeof *m->ghost.face, &m->ghost.face));
+    PW_TRY(pw_mem_alloc("ghost: cut elements", nelem, sizeof *m->ghost.cut, &m->ghost.cut));
+  }
   PW_TRY(pw_mem_alloc("nodes: active", n / 3, sizeof *m->active, &m->active));
   PW_TRY(pw_mem_alloc("nodes: internal force", n, sizeof *m->force, &m->force));
   PW_TRY(pw_mem_alloc("nodes: lift", n, sizeof *m->lift, &m->lift));
   PW_TRY(pw_mem_alloc("blocks: stiffness", m->blocks.nblock, sizeof *m->stiff, &m->stiff));
   PW_TRY(pw_mem_alloc("blocks: failures", m->blocks.nblock, sizeof *m->bad, &m->bad));
+  PW_TRY(pw_mem_alloc("blocks: reasons", m->blocks.nblock, sizeof *m->why, &m->why));
   return pw_mem_alloc("search: counts", m->points.n / SEARCH_CHUNK + 1, sizeof *m->chunk,
                       &m->chunk);
 }
@@ -75,17 +87,23 @@ static pw_status build(const pw_tet_setup *setup, pw_tet_model *m)
   PW_TRY(pw_tet_points_create(m->mesh, setup->fill, &m->points));
   PW_TRY(pw_walk_create(&m->mesh->tets, &m->walk));
   PW_TRY(divide(m));
-  PW_TRY(pw_csr_create(m->mesh, m->fbar != PW_FBAR_NONE, &m->csr));
+  const int coupled =
+      (m->fbar != PW_FBAR_NONE ? PW_CSR_PATCHES : 0) | (m->ghost.gamma > 0.0 ? PW_CSR_FACES : 0);
+  PW_TRY(pw_csr_create(m->mesh, coupled, &m->csr));
   return allocate(m);
 }
 
 pw_status pw_tet_model_create(const pw_tet_setup *setup, pw_tet_model *out)
 {
   PW_REQUIRE(setup->threads >= 1, PW_ERR_ARGUMENT, "%d threads", setup->threads);
+  PW_REQUIRE(setup->ghost >= 0.0, PW_ERR_ARGUMENT, "ghost stabilisation with %g Pa", setup->ghost);
   pw_tet_model m = {.mesh = setup->mesh,
                     .material = setup->fill->material,
+                    .nmaterial = setup->fill->nmaterial,
                     .fbar = setup->fbar,
-                    .threads = setup->threads};
+                    .threads = setup->threads,
+                    .ghost = {.gamma = setup->ghost},
+                    .dt = 1.0};
   pw_status s = build(setup, &m);
   if (s != PW_OK) {
     pw_tet_model_destroy(&m);
@@ -93,6 +111,15 @@ pw_status pw_tet_model_create(const pw_tet_setup *setup, pw_tet_model *out)
   }
   *out = m;
   return PW_OK;
+}
+
+bool pw_tet_model_is_symmetric(const pw_tet_model *m)
+{
+  bool symmetric = m->fbar == PW_FBAR_NONE;
+  for (pw_idx i = 0; i < m->nmaterial; i++) {
+    symmetric = symmetric && m->material[i].model->symmetric;
+  }
+  return symmetric;
 }
 
 static void search(pw_tet_model *m)
@@ -177,6 +204,8 @@ pw_status pw_tet_model_begin(pw_tet_model *m)
   PW_TRY(check_inside(m));
   sort_points(m);
   number_equations(m);
+  m->has_mass = false;
+  pw_tet_ghost_begin(m);
   return PW_OK;
 }
 
@@ -210,12 +239,22 @@ static void scatter(pw_tet_model *m, pw_idx p, const pw_real *force, const pw_re
   pw_csr_add(&m->csr, p, k);
 }
 
+static void scatter_inertia(pw_tet_model *m, pw_idx p, const pw_real *force)
+{
+  const size_t nnode = (size_t)m->mesh->tets.nnode;
+  const pw_idx np = m->mesh->patch_nodes, *node = m->mesh->patch_node + p * np;
+  for (pw_idx i = 0; i < 3 * np; i++) {
+    m->inertia.force[(size_t)(i % 3) * nnode + (size_t)node[i / 3]] += force[i];
+  }
+}
+
 static void evaluate_block(void *ctx, pw_idx block)
 {
   const evaluation *ev = ctx;
   pw_tet_model *m = ev->m;
-  pw_real force[PW_PATCH_DOFS], k[PW_PATCH_DOFS * PW_PATCH_DOFS];
+  pw_real force[PW_PATCH_DOFS], mass[PW_PATCH_DOFS], k[PW_PATCH_DOFS * PW_PATCH_DOFS];
   m->bad[block] = -1;
+  m->why[block] = NULL;
   m->stiff[block] = 0.0;
   for (pw_idx l = m->blocks.elem_start[block]; l < m->blocks.elem_start[block + 1]; l++) {
     const pw_idx p = m->blocks.elem[l];
@@ -223,11 +262,16 @@ static void evaluate_block(void *ctx, pw_idx block)
     pw_idx bad = pw_patch_move(m, p, ev->u, &motion);
     if (bad < 0 && motion.nactive > 0) {
       bad = pw_patch_evaluate(m, p, &motion, force, ev->tangent ? k : NULL);
+      if (m->inertia.on) {
+        pw_patch_inertia(m, p, mass, ev->tangent ? k : NULL);
+        scatter_inertia(m, p, mass);
+      }
       scatter(m, p, force, ev->tangent ? k : NULL);
       m->stiff[block] += motion.rounding;
     }
     if (bad >= 0 && m->bad[block] < 0) {
       m->bad[block] = bad;
+      m->why[block] = motion.why;
     }
   }
 }
@@ -236,8 +280,12 @@ static void evaluate_block(void *ctx, pw_idx block)
 static pw_status check_elements(const pw_tet_model *m, const pw_real *u)
 {
   pw_idx bad = -1;
+  const char *why = NULL;
   for (pw_idx k = 0; k < m->blocks.nblock; k++) {
-    bad = m->bad[k] >= 0 && (bad < 0 || m->bad[k] < bad) ? m->bad[k] : bad;
+    if (m->bad[k] >= 0 && (bad < 0 || m->bad[k] < bad)) {
+      bad = m->bad[k];
+      why = m->why[k];
+    }
   }
   pw_patch_motion motion;
   const pw_idx *n = m->mesh->tets.node + 4 * (size_t)(bad < 0 ? 0 : bad);
@@ -245,7 +293,8 @@ static pw_status check_elements(const pw_tet_model *m, const pw_real *u)
   PW_REQUIRE(!inverted, PW_RETRY_DOMAIN_INVERTED,
              "element %d (nodes %d %d %d %d) is turned inside out", (int)bad, (int)n[0], (int)n[1],
              (int)n[2], (int)n[3]);
-  PW_REQUIRE(bad < 0, PW_RETRY_STRESS, "no stress can be found in element %d", (int)bad);
+  PW_REQUIRE(bad < 0, PW_RETRY_STRESS, "no stress can be found in element %d%s%s", (int)bad,
+             why ? ": " : "", why ? why : "");
   return PW_OK;
 }
 
@@ -254,17 +303,37 @@ pw_status pw_tet_model_evaluate(pw_tet_model *m, const pw_real *u, bool tangent)
   evaluation ev = {.m = m, .u = u, .tangent = tangent};
   const size_t bytes = 3 * (size_t)m->mesh->tets.nnode * sizeof *m->force;
   memset(m->force, 0, bytes);
+  if (m->inertia.on) {
+    memset(m->inertia.force, 0, bytes);
+  }
   if (tangent) {
     memset(m->lift, 0, bytes);
     pw_csr_clear(&m->csr);
   }
   pw_assemble_coloured(&m->blocks, m->threads, evaluate_block, &ev);
+  pw_tet_ghost_add(m, u, tangent);
   pw_real sum = 0.0;
   for (pw_idx k = 0; k < m->blocks.nblock; k++) {
     sum += m->stiff[k];
   }
   m->rounding = tangent ? strain_rounding * sqrt(sum) : m->rounding;
   return check_elements(m, u);
+}
+
+void pw_tet_model_volumes(const pw_tet_model *m, const pw_real *u, pw_real *ratio)
+{
+  ratio[0] = INFINITY;
+  ratio[1] = -INFINITY;
+  for (pw_idx p = 0; p < m->mesh->npatch; p++) {
+    pw_patch_motion motion;
+    pw_patch_move(m, p, u, &motion);
+    for (pw_idx s = 0; s < m->mesh->per && motion.nactive > 0; s++) {
+      if (motion.active[s]) {
+        ratio[0] = pw_min(ratio[0], motion.motion[s].det);
+        ratio[1] = pw_max(ratio[1], motion.motion[s].det);
+      }
+    }
+  }
 }
 
 static void move_point(const pw_tet_model *m, pw_idx e, pw_idx point, const pw_real *u)
@@ -289,6 +358,12 @@ static void commit_point(const pw_tet_points *q, pw_idx point, pw_real det)
   q->jac_bar[i] = q->jac_bar_trial[i];
   for (size_t c = 0; c < 6; c++) {
     q->stress[c * l + i] = q->stress_trial[c * l + i];
+    if (q->left_cg) {
+      q->left_cg[c * l + i] = q->left_cg_trial[c * l + i];
+    }
+  }
+  for (size_t c = 0; c < 9 && q->def_grad; c++) {
+    q->def_grad[c * l + i] = q->def_grad_trial[c * l + i];
   }
   for (size_t c = 0; c < (size_t)q->nstate; c++) {
     q->state[c * l + i] = q->state_trial[c * l + i];
@@ -318,4 +393,5 @@ void pw_tet_model_commit(pw_tet_model *m, const pw_real *u)
 {
   evaluation ev = {.m = m, .u = u};
   pw_for_blocks(&m->blocks, m->threads, commit_block, &ev);
+  m->step++;
 }

@@ -31,33 +31,60 @@ typedef struct pw_tet_setup {
   pw_tet_mesh *mesh;       /**< borrowed; the model's callers may move it between steps */
   const pw_tet_fill *fill; /**< its materials are borrowed, the rest is used at once */
   pw_fbar fbar;
-  int threads; /**< >= 1 */
+  int threads;   /**< >= 1 */
+  pw_real ghost; /**< stiffness gamma of ghost stabilisation (engine/tet_ghost.h); 0: none; Pa */
 } pw_tet_setup;
+
+/** Inertia of a part, set by engine/tet_inertia.h; NULL and zero when quasi-static. */
+typedef struct pw_tet_inertia {
+  bool on;
+  bool consistent; /**< mass matrix sum m N_a N_b; false: lumped */
+  pw_real factor;  /**< of the mass in the tangent; 1/s2 */
+  pw_real *rate;  /**< [3][nnode] acceleration and damping that the mass is multiplied with; m/s2 */
+  pw_real *force; /**< [3][nnode] mass times rate at the last evaluation; N */
+} pw_tet_inertia;
+
+/** Ghost stabilisation of a model: what engine/tet_ghost.h works on. */
+typedef struct pw_tet_ghost {
+  pw_real gamma; /**< Pa */
+  pw_idx nface;  /**< faces of the step */
+  pw_idx *face;  /**< [2 nelem] 4 e + f, ascending */
+  uint8_t *cut;  /**< [nelem] 1: the element is cut */
+} pw_tet_ghost;
 
 typedef struct pw_tet_model {
   pw_tet_mesh *mesh;
   const pw_tet_material *material;
+  pw_idx nmaterial;
   pw_fbar fbar;
   int threads;
+  pw_real time, dt; /**< at the start of the part of a step at hand, its length; s. Set by the
+                         caller before an evaluation; 0 and 1 at first */
+  pw_off step;      /**< parts of steps committed */
   pw_walk walk;
   pw_blocks blocks; /**< of patches */
   pw_csr csr;       /**< tangent of the last evaluation */
   pw_tet_points points;
-  pw_idx *elem_start;    /**< [nelem + 1] offsets into elem_point */
-  pw_idx *elem_point;    /**< points by element, ascending in each */
-  pw_idx *elem_order;    /**< [nelem] scratch of the sort */
-  uint8_t *fixed;        /**< [3][nnode] 1: displacement prescribed. Set by the caller */
-  pw_real *prescribed;   /**< [3][nnode] displacement over the step where fixed; m. Likewise */
-  pw_real *external;     /**< [3][nnode] force at the end of the step; N. Likewise */
-  pw_idx *equation;      /**< [3][nnode] row, or -1: fixed, or no point near the node */
-  pw_idx *numbered;      /**< [3][nnode] scratch of the numbering */
-  uint8_t *active;       /**< [nnode] 1: an element with points has the node */
-  pw_real *force;        /**< [3][nnode] internal force of the last evaluation; N */
-  pw_real *lift;         /**< [3][nnode] tangent times prescribed where fixed; N */
-  pw_real *stiff;        /**< [nblock] squares of forces that a strain of 1 makes in a block; N2 */
-  pw_real rounding;      /**< norm of the forces that rounding of strains may leave, known from the
+  pw_idx *elem_start;  /**< [nelem + 1] offsets into elem_point */
+  pw_idx *elem_point;  /**< points by element, ascending in each */
+  pw_idx *elem_order;  /**< [nelem] scratch of the sort */
+  uint8_t *fixed;      /**< [3][nnode] 1: displacement prescribed. Set by the caller */
+  pw_real *prescribed; /**< [3][nnode] displacement over the step where fixed; m. Likewise */
+  pw_real *external;   /**< [3][nnode] force at the end of the step; N. Likewise */
+  pw_idx *equation;    /**< [3][nnode] row, or -1: fixed, or no point near the node */
+  pw_idx *numbered;    /**< [3][nnode] scratch of the numbering */
+  uint8_t *active;     /**< [nnode] 1: an element with points has the node */
+  pw_real *force;      /**< [3][nnode] internal force of the last evaluation; N */
+  pw_real *lift;       /**< [3][nnode] tangent times prescribed where fixed; N */
+  pw_real *stiff;      /**< [nblock] squares of forces that a strain of 1 makes in a block; N2 */
+  pw_real rounding;    /**< norm of the forces that rounding of strains may leave, known from the
                               last evaluation with a tangent; N */
-  pw_idx *bad;           /**< [nblock] first failing element of a block, or -1 */
+  pw_idx *bad;         /**< [nblock] first failing element of a block, or -1 */
+  const char **why;    /**< [nblock] what its material says, or NULL */
+  pw_real *mass;       /**< [nnode] lumped masses of the step, known while has_mass; kg */
+  bool has_mass;       /**< see engine/tet_loads.h */
+  pw_tet_inertia inertia;
+  pw_tet_ghost ghost;
   pw_walk_counts walked; /**< searches of the last pw_tet_model_begin() */
   pw_walk_counts *chunk; /**< counts of a chunk of points */
 } pw_tet_model;
@@ -80,12 +107,19 @@ void pw_tet_model_destroy(pw_tet_model *m);
 pw_status pw_tet_model_begin(pw_tet_model *m);
 
 /**
- * @brief Internal force, trial stress and, when asked for, tangent and lift.
+ * @brief Internal force (with that of ghost stabilisation), inertia, trial stress and, when asked
+ *        for, tangent and lift.
  * @param[in] u       [3][nnode] displacements of the nodes since the start of the step; m
  * @param[in] tangent fill csr and lift
  * @return PW_OK; PW_RETRY_DOMAIN_INVERTED or PW_RETRY_STRESS naming the first element that fails.
  */
 pw_status pw_tet_model_evaluate(pw_tet_model *m, const pw_real *u, bool tangent);
+
+/** @brief Whether the tangent is symmetric: without F-bar, of materials whose tangent is. */
+bool pw_tet_model_is_symmetric(const pw_tet_model *m);
+
+/** @brief Least and largest volume ratio over the step of an element with points, for @p u. */
+void pw_tet_model_volumes(const pw_tet_model *m, const pw_real *u, pw_real *ratio);
 
 /** @brief End a step: points move with @p u [3][nnode], the last one evaluated, and keep their trial
  *  state. */

@@ -19,6 +19,8 @@ typedef struct pw_patch_motion {
   bool active[PW_PATCH_ELEMENTS];
   pw_real ratio;    /**< v_patch / V_patch, or J_patch */
   pw_real now;      /**< v_patch; m3 */
+  const char *why;  /**< out of pw_patch_evaluate(): what the material of the failing element says,
+                         or NULL */
   pw_real rounding; /**< out of pw_patch_evaluate() with k: sum over the elements of the square of
                          sum v times modulus times length of the gradients; N2 */
 } pw_patch_motion;

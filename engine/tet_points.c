@@ -81,19 +81,34 @@ void pw_tet_points_destroy(pw_tet_points *p)
   pw_mem_free(&p->volume);
   pw_mem_free(&p->jac);
   pw_mem_free(&p->jac_bar);
+  pw_mem_free(&p->def_grad);
+  pw_mem_free(&p->def_grad_trial);
   pw_mem_free(&p->stress);
   pw_mem_free(&p->state);
   pw_mem_free(&p->stress_trial);
   pw_mem_free(&p->state_trial);
   pw_mem_free(&p->jac_bar_trial);
+  pw_mem_free(&p->left_cg);
+  pw_mem_free(&p->left_cg_trial);
+  pw_mem_free(&p->mass);
+  pw_mem_free(&p->velocity);
+  pw_mem_free(&p->acceleration);
   pw_mem_free(&p->body);
   pw_mem_free(&p->elem);
   memset(p, 0, sizeof *p);
 }
 
-static pw_status allocate(pw_tet_points *p)
+static pw_status allocate(pw_tet_points *p, bool left_cg, bool def_grad)
 {
   const pw_off n = p->ld, states = n * p->nstate;
+  if (def_grad) {
+    PW_TRY(pw_mem_alloc("points: F", 9 * n, sizeof *p->def_grad, &p->def_grad));
+    PW_TRY(pw_mem_alloc("points: trial F", 9 * n, sizeof *p->def_grad_trial, &p->def_grad_trial));
+  }
+  if (left_cg) {
+    PW_TRY(pw_mem_alloc("points: b", 6 * n, sizeof *p->left_cg, &p->left_cg));
+    PW_TRY(pw_mem_alloc("points: trial b", 6 * n, sizeof *p->left_cg_trial, &p->left_cg_trial));
+  }
   PW_TRY(pw_mem_alloc("points: x", 3 * n, sizeof *p->x, &p->x));
   PW_TRY(pw_mem_alloc("points: volume", n, sizeof *p->volume, &p->volume));
   PW_TRY(pw_mem_alloc("points: J", n, sizeof *p->jac, &p->jac));
@@ -103,8 +118,19 @@ static pw_status allocate(pw_tet_points *p)
   PW_TRY(pw_mem_alloc("points: trial stress", 6 * n, sizeof *p->stress_trial, &p->stress_trial));
   PW_TRY(pw_mem_alloc("points: trial state", states, sizeof *p->state_trial, &p->state_trial));
   PW_TRY(pw_mem_alloc("points: trial J", n, sizeof *p->jac_bar_trial, &p->jac_bar_trial));
+  PW_TRY(pw_mem_alloc("points: mass", n, sizeof *p->mass, &p->mass));
   PW_TRY(pw_mem_alloc("points: body", n, sizeof *p->body, &p->body));
   return pw_mem_alloc("points: element", n, sizeof *p->elem, &p->elem);
+}
+
+pw_status pw_tet_points_let_move(pw_tet_points *p)
+{
+  const pw_off n = 3 * (pw_off)p->ld;
+  if (p->velocity) {
+    return PW_OK;
+  }
+  PW_TRY(pw_mem_alloc("points: velocity", n, sizeof *p->velocity, &p->velocity));
+  return pw_mem_alloc("points: acceleration", n, sizeof *p->acceleration, &p->acceleration);
 }
 
 static pw_idx body_of(const pw_tet_fill *fill, pw_idx patch)
@@ -131,8 +157,6 @@ static pw_status check_fill(const pw_tet_mesh *mesh, const pw_tet_fill *fill, co
   }
   for (pw_idx i = 0; i < fill->nmaterial; i++) {
     const pw_tet_material *m = &fill->material[i];
-    PW_REQUIRE(!m->model->needs_left_cg, PW_ERR_UNSUPPORTED,
-               "material %s takes F and has no tangent for implicit steps", m->model->name);
     PW_TRY(m->model->check(m->param));
     if (m->model->needs_library) {
       PW_TRY(pw_umat_load(m->param));
@@ -160,6 +184,12 @@ static void add_point(pw_tet_points *p, const pw_real *x, pw_real volume, pw_idx
   }
   p->volume[i] = volume;
   p->jac[i] = p->jac_bar[i] = 1.0;
+  for (size_t c = 0; c < 3 && p->left_cg; c++) {
+    p->left_cg[c * l + i] = 1.0;
+  }
+  for (size_t c = 0; c < 9 && p->def_grad; c += 4) {
+    p->def_grad[c * l + i] = 1.0;
+  }
   p->body[i] = body;
   p->elem[i] = elem;
 }
@@ -203,6 +233,9 @@ static void start_materials(const pw_tet_fill *fill, pw_tet_points *p)
     while (last < p->n && p->body[last] == p->body[first]) {
       last++;
     }
+    for (pw_idx i = first; i < last; i++) {
+      p->mass[i] = p->volume[i] * m->model->density(m->param);
+    }
     if (m->model->place) {
       m->model->place(m->param, last - first, p->ld, p->x + p->ld + first, p->state + first);
     }
@@ -217,6 +250,7 @@ pw_status pw_tet_points_create(const pw_tet_mesh *mesh, const pw_tet_fill *fill,
   PW_TRY(check_fill(mesh, fill, part, n));
   pw_tet_points p = {.n = 0};
   pw_off total = 0;
+  bool left_cg = false, def_grad = false;
   for (pw_idx k = 0; k < mesh->npatch; k++) {
     total += body_of(fill, k) >= 0 ? n * (fill->per_patch ? 1 : mesh->per) : 0;
   }
@@ -225,9 +259,11 @@ pw_status pw_tet_points_create(const pw_tet_mesh *mesh, const pw_tet_fill *fill,
   for (pw_idx i = 0; i < fill->nmaterial; i++) {
     int states = fill->material[i].model->nstate(fill->material[i].param);
     p.nstate = states > p.nstate ? states : p.nstate;
+    left_cg = left_cg || fill->material[i].model->needs_left_cg;
+    def_grad = def_grad || fill->material[i].model->needs_def_grad;
   }
   p.ld = pw_pad((pw_idx)total);
-  pw_status s = allocate(&p);
+  pw_status s = allocate(&p, left_cg, def_grad);
   if (s != PW_OK) {
     pw_tet_points_destroy(&p);
     return s;

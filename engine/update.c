@@ -2,15 +2,11 @@
 #include "engine/update.h"
 
 #include <math.h>
-#include <stdio.h>
 #include <string.h>
 
-#include "engine/assemble.h"
 #include "engine/domain.h"
 #include "engine/fbar.h"
-#include "engine/ranges.h"
-#include "engine/sim_report.h"
-#include "engine/structure_sim.h"
+#include "engine/rates.h"
 
 /** Scratch of one batch of points; lives on the stack of its thread. */
 typedef struct {
@@ -37,7 +33,7 @@ static void each_body(pw_sim *sim, pw_idx block, range_kernel kernel)
     pw_idx first, last;
     body_range(sim, block, b, &first, &last);
     if (first < last) {
-      kernel(&sim->transfer, pw_nodes_field(&sim->nodes, sim->body[b].field), first, last);
+      kernel(&sim->transfer, pw_rates_records(sim, block, sim->body[b].field), first, last);
     }
   }
 }
@@ -56,13 +52,14 @@ void pw_block_p2g_momentum(void *ctx, pw_idx block)
 
 static void velocity(pw_sim *sim, pw_idx block, bool remap)
 {
-  const pw_real pic = pw_min(1.0, sim->scene.method.noise_damping_per_s * sim->dt);
+  const pw_real pic = pw_min(1.0, sim->scene.method.noise_damping_per_s * pw_rates_dt(sim, block));
   pw_real settled = 0.0;
   for (int b = 0; b < sim->nbody; b++) {
     pw_idx first, last;
     body_range(sim, block, b, &first, &last);
     pw_real *rec = pw_nodes_field(&sim->nodes, sim->body[b].field);
-    sim->kernels->g2p_velocity(&sim->transfer, rec, first, last);
+    sim->kernels->g2p_velocity(&sim->transfer, pw_rates_records(sim, block, sim->body[b].field),
+                               first, last);
     if (pic > 0.0) {
       settled += sim->kernels->g2p_settle(&sim->transfer, rec, pic, first, last);
     }
@@ -203,14 +200,32 @@ static void sum_batch(const pw_sim *sim, const batch *s, pw_idx first, pw_idx n,
   sums->speed_max = speed;
 }
 
+/* The deformation gradient with the volume ratio of F-bar. */
+static void share_def_grad(const pw_sim *sim, batch *s, pw_idx first, pw_idx n)
+{
+  const bool axi = sim->scene.geometry == PW_AXI;
+  for (pw_idx i = 0; i < n; i++) {
+    pw_real *f = s->def_grad + i;
+    pw_real own = (f[0] * f[4 * PW_CHUNK] - f[PW_CHUNK] * f[3 * PW_CHUNK]) * f[8 * PW_CHUNK];
+    pw_real ratio = sim->points.volume_ratio[first + i] / own;
+    pw_real scale = axi ? cbrt(ratio) : sqrt(ratio);
+    for (int k = 0; k < 9; k++) {
+      f[k * PW_CHUNK] *= axi || k != 8 ? scale : 1.0;
+    }
+  }
+}
+
 /* What the material sees in place of the points' own deformation. */
 static void share_volume_change(pw_sim *sim, int b, batch *s, pw_idx first, pw_idx n)
 {
   pw_fbar_apply(sim, b, first, n, s->dstrain, s->dvol);
+  const bool axi = sim->scene.geometry == PW_AXI;
+  if (sim->body[b].model->needs_def_grad) {
+    share_def_grad(sim, s, first, n);
+  }
   if (!sim->body[b].model->needs_left_cg) {
     return;
   }
-  const bool axi = sim->scene.geometry == PW_AXI;
   for (pw_idx i = 0; i < n; i++) {
     pw_real ratio = sim->points.volume_ratio[first + i] / s->jac[i];
     pw_real scale = axi ? cbrt(ratio * ratio) : ratio;
@@ -223,6 +238,7 @@ static void share_volume_change(pw_sim *sim, int b, batch *s, pw_idx first, pw_i
 
 static void stress_batch(pw_sim *sim, int b, batch *s, pw_idx first, pw_idx n, pw_block_sums *sums)
 {
+  const pw_idx block = (pw_idx)(sums - sim->sums);
   const pw_body *body = &sim->body[b];
   pw_points *p = &sim->points;
   for (int c = 0; c < 4; c++) {
@@ -233,13 +249,18 @@ static void stress_batch(pw_sim *sim, int b, batch *s, pw_idx first, pw_idx n, p
   pw_stress_args args = {.n = n,
                          .ld = p->ld,
                          .ldi = PW_CHUNK,
-                         .dt = sim->dt,
+                         .dt = pw_rates_dt(sim, block),
                          .time = sim->time,
                          .step = sim->step,
                          .dstrain = s->dstrain,
                          .spin = s->spin,
                          .dvol = s->dvol,
                          .density = s->density,
+                         .id = p->id + first,
+                         .x = p->x + first,
+                         .ldx = p->ld,
+                         .dim = 2,
+                         .of_f = body->model->of_f,
                          .stress = p->stress + first,
                          .state = p->state ? p->state + first : NULL,
                          .wave_speed = s->wave_speed,
@@ -285,8 +306,8 @@ static void update_body(const pw_update_pass *pass, batch *s, pw_idx block, int 
     if (shared) {
       pw_fbar_gradients(sim->fbar, sim->points.ld, first, n, &s->grad);
     } else {
-      sim->kernels->g2p_gradient(&sim->transfer, rec, pass->slot, sim->dt, pass->move, first,
-                                 first + n, &s->grad);
+      sim->kernels->g2p_gradient(&sim->transfer, rec, pass->slot, pw_rates_dt(sim, block),
+                                 pass->move, first, first + n, &s->grad);
     }
     if (!pass->stress) {
       continue;
@@ -346,153 +367,4 @@ void pw_block_wave_speed(void *ctx, pw_idx block)
       stress_batch(sim, b, &s, first, n, &sim->sums[block]);
     }
   }
-}
-
-static pw_status fail_at(const pw_sim *sim, pw_idx i, pw_status status, const char *what)
-{
-  const pw_points *p = &sim->points;
-  const pw_scene_body *body = &sim->scene.body[p->body[i]];
-  return pw_error_set(status, __FILE__, __LINE__, __func__,
-                      "%s: point %d at (%.6g, %.6g) m, velocity (%.4g, %.4g) m/s, body %s, "
-                      "material %s, step %lld, time %.9g s",
-                      what, p->id[i], p->x[i], p->x[p->ld + i], p->v[i], p->v[p->ld + i],
-                      body->name, sim->scene.material[body->material].name, (long long)sim->step,
-                      sim->time);
-}
-
-static void add_counts(pw_material_counts *sum, const pw_material_counts *c)
-{
-  sum->substeps += c->substeps;
-  sum->rhs += c->rhs;
-  sum->rejected += c->rejected;
-  sum->forced += c->forced;
-  sum->cut_off += c->cut_off;
-}
-
-pw_status pw_update_check(pw_sim *sim)
-{
-  for (pw_idx k = 0; k < sim->blocks.nblock; k++) {
-    const pw_block_sums *s = &sim->sums[k];
-    if (s->bad >= 0) {
-      return fail_at(sim, s->bad, s->bad_status, s->why ? s->why : pw_status_text(s->bad_status));
-    }
-    if (s->weights.lost >= 0) {
-      return fail_at(sim, s->weights.lost, PW_ERR_POINT_LOST, "a point left the grid");
-    }
-    if (s->weights.inverted >= 0) {
-      return fail_at(sim, s->weights.inverted, PW_RETRY_DOMAIN_INVERTED, "a domain is inverted");
-    }
-    sim->sort_needed = sim->sort_needed || s->weights.overrun >= 0;
-  }
-  return PW_OK;
-}
-
-pw_status pw_update_collect(pw_sim *sim)
-{
-  pw_real speed = 0.0, rate = 0.0;
-  sim->energy.kinetic = 0.0;
-  for (pw_idx k = 0; k < sim->blocks.nblock; k++) {
-    const pw_block_sums *s = &sim->sums[k];
-    sim->energy.kinetic += sim->measure * s->kinetic;
-    sim->energy.strain_work += sim->measure * s->strain_work;
-    speed = pw_max(speed, s->speed_max);
-    rate = pw_max(rate, s->rate_max);
-    sim->limited += s->limited;
-    sim->rebuilt += s->rebuilt;
-    sim->reshaped += s->reshaped;
-    add_counts(&sim->material, &s->material);
-  }
-  PW_TRY(pw_update_check(sim));
-  sim->energy.kinetic += pw_structures_kinetic(sim);
-  const pw_real swift = pw_structures_speed(sim);
-  speed = swift <= speed ? speed : swift;
-  rate = pw_max(rate, swift / sim->mesh.cell);
-  const pw_scene *scene = &sim->scene;
-  sim->signal_speed = speed;
-  const pw_real cfl = scene->time.cfl;
-  pw_real stable = sim->mesh.graded ? cfl / rate : cfl * sim->mesh.cell / speed;
-  sim->dt_next = pw_min(scene->time.dt_max_s, stable);
-  if (scene->time.dt_s > 0.0) {
-    sim->dt_next = scene->time.dt_s;
-  }
-  PW_REQUIRE(sim->dt_next > 0.0 && isfinite(speed), PW_RETRY_NAN,
-             "the stable step is not a positive number (signal speed %g m/s) at step %lld, time "
-             "%.9g s",
-             speed, (long long)sim->step, sim->time);
-  return PW_OK;
-}
-
-pw_status pw_update_sort(pw_sim *sim)
-{
-  pw_points *p = &sim->points;
-  for (pw_idx i = 0; i < p->n; i++) {
-    pw_real x[2] = {p->x[i], p->x[p->ld + i]};
-    p->home[i] = pw_mesh_locate(&sim->mesh, x);
-    if (p->home[i] < 0) {
-      return fail_at(sim, i, PW_ERR_POINT_LOST, "a point is outside the grid");
-    }
-  }
-  if (pw_blocks_sort(&sim->blocks, p->n, p->home, p->body, sim->from)) {
-    pw_points_permute(p, sim->from, sim->scratch);
-  }
-  pw_ranges_renew(sim);
-  pw_for_blocks(&sim->blocks, sim->threads, pw_block_weights, sim);
-  for (pw_idx k = 0; k < sim->blocks.nblock; k++) {
-    pw_idx far = sim->sums[k].weights.overrun;
-    if (far >= 0) { /* its scatter would touch nodes of other blocks of the colour */
-      return fail_at(sim, far, PW_RETRY_DOMAIN_INVERTED,
-                     "a domain reaches beyond the halo of its block (method.domain_limit_cells)");
-    }
-  }
-  sim->sort_needed = false;
-  sim->sorts++;
-  return PW_OK;
-}
-
-/* Point of the largest speed, for the message of a run that blows up. */
-static pw_idx fastest_point(const pw_sim *sim)
-{
-  const pw_points *p = &sim->points;
-  pw_real most = -1.0;
-  pw_idx fastest = 0;
-  for (pw_idx i = 0; i < p->n; i++) {
-    pw_real v2 = p->v[i] * p->v[i] + p->v[p->ld + i] * p->v[p->ld + i];
-    if (v2 > most) {
-      most = v2;
-      fastest = i;
-    }
-  }
-  return fastest;
-}
-
-pw_status pw_update_energy(pw_sim *sim)
-{
-  pw_energy *e = &sim->energy;
-  for (pw_idx k = 0; k < sim->blocks.nblock; k++) {
-    e->damping += sim->measure * sim->sums[k].settled;
-    sim->clamped += sim->sums[k].weights.clamped;
-  }
-  if (sim->scene.method.update == PW_USF) { /* stress came before the velocities */
-    e->kinetic = pw_kinetic_energy(sim);
-  }
-  pw_real change = e->external - sim->external_last;
-  sim->external_last = e->external;
-  sim->external_gross += change < 0.0 ? -change : change;
-  pw_real supplied = e->initial + sim->external_gross;
-  pw_real surplus = e->kinetic + e->strain_work + e->contact + e->spring + e->damping +
-                    e->absorbed - e->initial - e->external;
-  /* A body at rest is supplied with nothing but round-off: allow it a speed of 1e-4 c. */
-  pw_real floor = 0.5e-8 * sim->measure * sim->mass * sim->signal_speed * sim->signal_speed;
-  if (surplus <= supplied + floor) {
-    return PW_OK;
-  }
-  PW_REQUIRE(sim->points.n > 0, PW_RETRY_DIVERGED,
-             "unstable: %.4g J of energy appeared from nothing, %.4g J were supplied", surplus,
-             supplied);
-  char what[160];
-  snprintf(what, sizeof what,
-           "unstable, a smaller time.cfl may help: %.4g J of energy appeared from nothing, %.4g J "
-           "were supplied; fastest",
-           surplus, supplied);
-  return fail_at(sim, fastest_point(sim), PW_RETRY_DIVERGED, what);
 }

@@ -11,6 +11,7 @@ void pw_gmsh_destroy(pw_gmsh_mesh *m)
   for (int i = 0; i < m->ngroup; i++) {
     pw_mem_free(&m->group[i].node);
     pw_mem_free(&m->group[i].cell);
+    pw_mem_free(&m->group[i].face);
   }
   pw_mem_free(&m->group);
   pw_mem_free(&m->mesh.x);
@@ -56,6 +57,11 @@ pw_status pw_gmsh_read(const char *path, pw_gmsh_mesh *out)
   PW_REQUIRE(false, PW_ERR_UNSUPPORTED,
              "%s: built without gmsh, no .msh files (Debian package: libgmsh-dev)", path);
   return PW_OK;
+}
+
+pw_status pw_gmsh_make(const pw_gmsh_recipe *recipe, pw_gmsh_mesh *out)
+{
+  return pw_gmsh_read(recipe->path, out);
 }
 
 #endif /* PW_GMSH_LIBRARY */

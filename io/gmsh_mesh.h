@@ -23,6 +23,8 @@ typedef struct pw_gmsh_group {
   pw_idx *node; /**< [nnode] nodes of all its elements, ascending */
   pw_idx ncell;
   pw_idx *cell; /**< [ncell] its tetrahedra, ascending; with dim 3 alone */
+  pw_idx nface;
+  pw_idx *face; /**< [nface][3] its triangles, those of six nodes as four; with dim 2 alone */
 } pw_gmsh_group;
 
 typedef struct pw_gmsh_mesh {
@@ -45,6 +47,21 @@ bool pw_gmsh_available(void);
  *         without gmsh or where its library cannot be loaded; PW_ERR_MEMORY.
  */
 pw_status pw_gmsh_read(const char *path, pw_gmsh_mesh *out);
+
+/** How a geometry is meshed. */
+typedef struct pw_gmsh_recipe {
+  const char *path;    /**< a .geo script: gmsh runs it */
+  const char *numbers; /**< "n=8 width=0.1": constants that it defines, or "" */
+  pw_real size_factor; /**< all sizes of cells times this */
+  int nodes;           /**< of a tetrahedron: 10 or 4 */
+} pw_gmsh_recipe;
+
+/**
+ * @brief Mesh a geometry, on one thread: the same geometry gives the same mesh.
+ * @return as pw_gmsh_read(); PW_ERR_SCENE for numbers that are none and for a geometry that gmsh
+ *         cannot mesh, with its message.
+ */
+pw_status pw_gmsh_make(const pw_gmsh_recipe *recipe, pw_gmsh_mesh *out);
 
 /** @brief Free; a zeroed struct is accepted. */
 void pw_gmsh_destroy(pw_gmsh_mesh *m);

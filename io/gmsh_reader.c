@@ -3,58 +3,22 @@
 
 #ifdef PW_GMSH_LIBRARY
 
-#include <dlfcn.h>
-#include <gmshc.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "engine/core/mem.h"
+#include "io/gmsh_library.h"
 
-enum { LINEAR = 4, TEN_NODES = 11 }; /* gmsh's types of elements */
+enum { LINEAR = 4, TEN_NODES = 11, TRIANGLE = 2, SIX_NODES = 9 }; /* gmsh's types of elements */
 enum { MAX_TAG = 1 << 28 };
 
-/* Functions of the library that are used. */
-#define CALLS(X)                                                                                   \
-  X(gmshInitialize)                                                                                \
-  X(gmshFinalize)                                                                                  \
-  X(gmshFree)                                                                                      \
-  X(gmshOpen)                                                                                      \
-  X(gmshOptionSetNumber)                                                                           \
-  X(gmshModelGetPhysicalGroups)                                                                    \
-  X(gmshModelGetPhysicalName)                                                                      \
-  X(gmshModelGetEntitiesForPhysicalGroup)                                                          \
-  X(gmshModelMeshGetElementTypes)                                                                  \
-  X(gmshModelMeshGetElementsByType)                                                                \
-  X(gmshModelMeshGetNodes)                                                                         \
-  X(gmshModelMeshGetNodesForPhysicalGroup)
-
-#define MEMBER(name) __typeof__(name) *name;
-static struct {
-  void *library;
-  CALLS(MEMBER)
-} gmsh;
+static const pw_gmsh_library *gmsh;
 
 bool pw_gmsh_available(void)
 {
   return true;
-}
-
-static pw_status load_library(void)
-{
-  if (gmsh.library) {
-    return PW_OK;
-  }
-  void *library = dlopen(PW_GMSH_LIBRARY, RTLD_NOW | RTLD_LOCAL), *symbol = NULL;
-  PW_REQUIRE(library, PW_ERR_UNSUPPORTED, "gmsh cannot be loaded: %s", dlerror());
-#define LOAD(name)                                                                                 \
-  symbol = dlsym(library, #name);                                                                  \
-  PW_REQUIRE(symbol, PW_ERR_UNSUPPORTED, "gmsh has no function %s", #name);                        \
-  memcpy(&gmsh.name, &symbol, sizeof symbol);
-  CALLS(LOAD)
-  gmsh.library = library;
-  return PW_OK;
 }
 
 /* What the library hands over: freed by it. */
@@ -73,31 +37,18 @@ typedef struct {
   size_t node_tags, cell_tags;
 } reading;
 
-/* gmsh would take other files for scripts and run them. */
-static pw_status check_file(const char *path)
-{
-  char head[12] = "";
-  FILE *file = fopen(path, "rb");
-  PW_REQUIRE(file, PW_ERR_FILE, "%s: cannot be opened", path);
-  size_t n = fread(head, 1, sizeof head - 1, file);
-  fclose(file);
-  PW_REQUIRE(n == sizeof head - 1 && memcmp(head, "$MeshFormat", n) == 0, PW_ERR_FILE,
-             "%s: no gmsh mesh: it does not begin with $MeshFormat", path);
-  return PW_OK;
-}
-
 static pw_status choose_type(reading *r)
 {
   int *types = NULL, failed = 0;
   size_t n = 0;
-  gmsh.gmshModelMeshGetElementTypes(&types, &n, 3, -1, &failed);
+  gmsh->gmshModelMeshGetElementTypes(&types, &n, 3, -1, &failed);
   int other = 0, linear = 0, ten = 0;
   for (size_t i = 0; i < n; i++) {
     linear |= types[i] == LINEAR;
     ten |= types[i] == TEN_NODES;
     other = types[i] != LINEAR && types[i] != TEN_NODES ? types[i] : other;
   }
-  gmsh.gmshFree(types);
+  gmsh->gmshFree(types);
   PW_REQUIRE(!failed && (n > 0), PW_ERR_SCENE, "%s: no tetrahedra in the file", r->path);
   PW_REQUIRE(other == 0, PW_ERR_SCENE, "%s: elements of gmsh's type %d are no tetrahedra", r->path,
              other);
@@ -112,13 +63,13 @@ static pw_status fetch(reading *r)
   int failed = 0;
   size_t n = 0, coordinates = 0, none = 0;
   double *parameter = NULL;
-  gmsh.gmshModelMeshGetElementsByType(r->type, &r->cell, &r->ncell, &r->cell_node, &n, -1, 0, 1,
-                                      &failed);
+  gmsh->gmshModelMeshGetElementsByType(r->type, &r->cell, &r->ncell, &r->cell_node, &n, -1, 0, 1,
+                                       &failed);
   PW_REQUIRE(!failed && r->ncell > 0 && r->ncell < 1 << 25, PW_ERR_SCENE,
              "%s: %zu tetrahedra in the file", r->path, r->ncell);
-  gmsh.gmshModelMeshGetNodes(&r->node, &r->nnode, &r->x, &coordinates, &parameter, &none, -1, -1, 0,
-                             0, &failed);
-  gmsh.gmshFree(parameter);
+  gmsh->gmshModelMeshGetNodes(&r->node, &r->nnode, &r->x, &coordinates, &parameter, &none, -1, -1,
+                              0, 0, &failed);
+  gmsh->gmshFree(parameter);
   PW_REQUIRE(!failed && r->nnode > 0 && r->nnode < 1 << 28 && coordinates == 3 * r->nnode,
              PW_ERR_SCENE, "%s: %zu nodes in the file", r->path, r->nnode);
   return PW_OK;
@@ -268,20 +219,74 @@ static pw_status copy_group_cells(const reading *r, pw_gmsh_group *g)
   size_t nentity = 0, total = 0, *all = NULL;
   pw_status s = pw_mem_alloc("mesh file: cells of a group", (pw_off)r->ncell, sizeof *all, &all);
   PW_TRY(s);
-  gmsh.gmshModelGetEntitiesForPhysicalGroup(g->dim, g->tag, &entity, &nentity, &failed);
+  gmsh->gmshModelGetEntitiesForPhysicalGroup(g->dim, g->tag, &entity, &nentity, &failed);
   for (size_t i = 0; i < nentity && !failed; i++) {
     size_t *tag = NULL, *node = NULL, n = 0, nodes = 0;
-    gmsh.gmshModelMeshGetElementsByType(r->type, &tag, &n, &node, &nodes, entity[i], 0, 1, &failed);
+    gmsh->gmshModelMeshGetElementsByType(r->type, &tag, &n, &node, &nodes, entity[i], 0, 1,
+                                         &failed);
     for (size_t k = 0; k < n && total < r->ncell; k++) {
       all[total++] = tag[k];
     }
-    gmsh.gmshFree(tag);
-    gmsh.gmshFree(node);
+    gmsh->gmshFree(tag);
+    gmsh->gmshFree(node);
   }
-  gmsh.gmshFree(entity);
+  gmsh->gmshFree(entity);
   s = copy_items(all, total, r->cell_of, r->cell_tags, &g->cell, &g->ncell);
   pw_mem_free(&all);
   PW_REQUIRE(!failed, PW_ERR_FILE, "%s: the volumes of group %d cannot be read", r->path, g->tag);
+  return s;
+}
+
+/* Linear triangles in one of the library's: itself, or four with the middles of its edges, which
+ * are those of 0-1, 1-2 and 2-0. Triangles with a node that the mesh does not have are left out. */
+static void add_triangles(const reading *r, const size_t *node, pw_idx nodes, pw_gmsh_group *g)
+{
+  static const int part[4][3] = {{0, 3, 5}, {1, 4, 3}, {2, 5, 4}, {3, 4, 5}};
+  pw_idx index[6];
+  for (int i = 0; i < nodes; i++) {
+    index[i] = node[i] < r->node_tags ? r->node_of[node[i]] : -1;
+    if (index[i] < 0) {
+      return;
+    }
+  }
+  for (int t = 0; t < (nodes == 6 ? 4 : 1); t++, g->nface++) {
+    for (int i = 0; g->face && i < 3; i++) {
+      g->face[3 * g->nface + i] = index[nodes == 6 ? part[t][i] : i];
+    }
+  }
+}
+
+/* Triangles of a surface; counted only where there is no room yet. */
+static int collect_faces(const reading *r, const int *entity, size_t nentity, pw_gmsh_group *g)
+{
+  int failed = 0;
+  const pw_idx nodes = r->type == TEN_NODES ? 6 : 3;
+  g->nface = 0;
+  for (size_t i = 0; i < nentity && !failed; i++) {
+    size_t *tag = NULL, *node = NULL, n = 0, total = 0;
+    gmsh->gmshModelMeshGetElementsByType(nodes == 6 ? SIX_NODES : TRIANGLE, &tag, &n, &node, &total,
+                                         entity[i], 0, 1, &failed);
+    for (size_t k = 0; k < n && total == n * (size_t)nodes; k++) {
+      add_triangles(r, node + k * (size_t)nodes, nodes, g);
+    }
+    gmsh->gmshFree(tag);
+    gmsh->gmshFree(node);
+  }
+  return failed;
+}
+
+static pw_status copy_group_faces(const reading *r, pw_gmsh_group *g)
+{
+  int *entity = NULL, failed = 0;
+  size_t n = 0;
+  gmsh->gmshModelGetEntitiesForPhysicalGroup(g->dim, g->tag, &entity, &n, &failed);
+  failed = failed || collect_faces(r, entity, n, g);
+  pw_status s = pw_mem_alloc("mesh file: faces", 3 * (pw_off)g->nface, sizeof *g->face, &g->face);
+  if (s == PW_OK && !failed) {
+    failed = collect_faces(r, entity, n, g);
+  }
+  gmsh->gmshFree(entity);
+  PW_REQUIRE(!failed, PW_ERR_FILE, "%s: the faces of group %d cannot be read", r->path, g->tag);
   return s;
 }
 
@@ -291,26 +296,26 @@ static pw_status copy_group(const reading *r, pw_gmsh_group *g)
   size_t *tag = NULL, n = 0, coordinates = 0;
   double *x = NULL;
   int failed = 0;
-  gmsh.gmshModelGetPhysicalName(g->dim, g->tag, &name, &failed);
+  gmsh->gmshModelGetPhysicalName(g->dim, g->tag, &name, &failed);
   if (!failed && name && name[0]) {
     snprintf(g->name, sizeof g->name, "%s", name);
   } else {
     snprintf(g->name, sizeof g->name, "%d", g->tag);
   }
-  gmsh.gmshFree(name);
-  gmsh.gmshModelMeshGetNodesForPhysicalGroup(g->dim, g->tag, &tag, &n, &x, &coordinates, &failed);
+  gmsh->gmshFree(name);
+  gmsh->gmshModelMeshGetNodesForPhysicalGroup(g->dim, g->tag, &tag, &n, &x, &coordinates, &failed);
   pw_status s = copy_items(tag, n, r->node_of, r->node_tags, &g->node, &g->nnode);
-  gmsh.gmshFree(tag);
-  gmsh.gmshFree(x);
+  gmsh->gmshFree(tag);
+  gmsh->gmshFree(x);
   PW_TRY(s);
-  return g->dim == 3 ? copy_group_cells(r, g) : PW_OK;
+  return g->dim == 3 ? copy_group_cells(r, g) : g->dim == 2 ? copy_group_faces(r, g) : PW_OK;
 }
 
 static pw_status copy_groups(const reading *r, pw_gmsh_mesh *m)
 {
   int *pair = NULL, failed = 0;
   size_t n = 0;
-  gmsh.gmshModelGetPhysicalGroups(&pair, &n, -1, &failed);
+  gmsh->gmshModelGetPhysicalGroups(&pair, &n, -1, &failed);
   pw_status s = pw_mem_alloc("mesh file: groups", (pw_off)(n / 2), sizeof *m->group, &m->group);
   for (size_t i = 0; i + 1 < n && s == PW_OK && !failed; i += 2) {
     pw_gmsh_group *g = &m->group[m->ngroup++];
@@ -318,37 +323,28 @@ static pw_status copy_groups(const reading *r, pw_gmsh_mesh *m)
     g->tag = pair[i + 1];
     s = copy_group(r, g);
   }
-  gmsh.gmshFree(pair);
+  gmsh->gmshFree(pair);
   return s;
 }
 
 static pw_status read_open_file(reading *r, pw_gmsh_mesh *m)
 {
-  int failed = 0;
-  gmsh.gmshOptionSetNumber("General.Terminal", 0.0, &failed); /* no messages */
-  gmsh.gmshOpen(r->path, &failed);
-  PW_REQUIRE(!failed, PW_ERR_FILE, "%s: gmsh cannot read the file", r->path);
   PW_TRY(choose_type(r));
   PW_TRY(fetch(r));
   PW_TRY(copy_mesh(r, m));
   return copy_groups(r, m);
 }
 
-pw_status pw_gmsh_read(const char *path, pw_gmsh_mesh *out)
+/* Read what the library has open. */
+static pw_status take(const char *path, pw_gmsh_mesh *out)
 {
   reading r = {.path = path};
   pw_gmsh_mesh m = {.ngroup = 0};
-  int failed = 0;
-  PW_TRY(check_file(path));
-  PW_TRY(load_library());
-  gmsh.gmshInitialize(0, NULL, 0, &failed);
-  PW_REQUIRE(!failed, PW_ERR_UNSUPPORTED, "gmsh cannot be started");
   pw_status s = read_open_file(&r, &m);
-  gmsh.gmshFree(r.node);
-  gmsh.gmshFree(r.x);
-  gmsh.gmshFree(r.cell);
-  gmsh.gmshFree(r.cell_node);
-  gmsh.gmshFinalize(&failed);
+  gmsh->gmshFree(r.node);
+  gmsh->gmshFree(r.x);
+  gmsh->gmshFree(r.cell);
+  gmsh->gmshFree(r.cell_node);
   pw_mem_free(&r.node_of);
   pw_mem_free(&r.cell_of);
   pw_mem_free(&r.node_at);
@@ -359,6 +355,22 @@ pw_status pw_gmsh_read(const char *path, pw_gmsh_mesh *out)
   }
   *out = m;
   return PW_OK;
+}
+
+pw_status pw_gmsh_read(const char *path, pw_gmsh_mesh *out)
+{
+  PW_TRY(pw_gmsh_open(path, NULL, &gmsh));
+  pw_status s = take(path, out);
+  pw_gmsh_close(gmsh);
+  return s;
+}
+
+pw_status pw_gmsh_make(const pw_gmsh_recipe *recipe, pw_gmsh_mesh *out)
+{
+  PW_TRY(pw_gmsh_open(recipe->path, recipe, &gmsh));
+  pw_status s = take(recipe->path, out);
+  pw_gmsh_close(gmsh);
+  return s;
 }
 
 #else

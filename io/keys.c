@@ -10,10 +10,11 @@
 static const struct {
   const char *suffix, *unit;
 } units[] = {
-    {"_m", "m"},       {"_m2", "m2"},         {"_m3", "m3"},   {"_s", "s"},     {"_m_s", "m/s"},
-    {"_m_s2", "m/s2"}, {"_kg_m3", "kg/m3"},   {"_kg", "kg"},   {"_pa", "Pa"},   {"_pa_m", "Pa/m"},
-    {"_pa_s", "Pa s"}, {"_pa_s_m", "Pa s/m"}, {"_deg", "deg"}, {"_rad", "rad"}, {"_rad_s", "rad/s"},
-    {"_hz", "Hz"},     {"_cells", "cells"},
+    {"_m", "m"},       {"_m2", "m2"},       {"_m3", "m3"},         {"_s", "s"},
+    {"_m_s", "m/s"},   {"_m_s2", "m/s2"},   {"_kg_m3", "kg/m3"},   {"_kg", "kg"},
+    {"_pa", "Pa"},     {"_pa_m", "Pa/m"},   {"_force_n", "N"},     {"_n_m3", "N/m3"},
+    {"_per_s", "1/s"}, {"_pa_s", "Pa s"},   {"_pa_s_m", "Pa s/m"}, {"_deg", "deg"},
+    {"_rad", "rad"},   {"_rad_s", "rad/s"}, {"_hz", "Hz"},         {"_cells", "cells"},
 };
 
 const char *pw_key_unit(const pw_key *key)
@@ -34,8 +35,8 @@ void pw_key_range(const pw_key *key, char *out)
 {
   bool below = key->lo <= -PW_HUGE, above = key->hi >= PW_HUGE, positive = key->lo == PW_TINY;
   out[0] = '\0';
-  if (key->type != PW_KEY_REAL && key->type != PW_KEY_PAIR && key->type != PW_KEY_REALS &&
-      key->type != PW_KEY_INT) {
+  if (key->type != PW_KEY_REAL && key->type != PW_KEY_PAIR && key->type != PW_KEY_TRIPLE &&
+      key->type != PW_KEY_REALS && key->type != PW_KEY_INT) {
     return;
   }
   if (below && above) {
@@ -60,6 +61,8 @@ const char *pw_key_type_text(pw_key_type type)
     return "number";
   case PW_KEY_PAIR:
     return "[a, b]";
+  case PW_KEY_TRIPLE:
+    return "[x, y, z]";
   case PW_KEY_REALS:
     return "[a, b, ...]";
   case PW_KEY_INT:
@@ -135,6 +138,29 @@ void pw_keys_print_table(FILE *out, const char *title, const char *brief, const 
   print_table(out, title, brief, keys);
 }
 
+static void print_effect(FILE *out, const pw_effect *e, const char *where)
+{
+  char title[3 * PW_NAME];
+  snprintf(title, sizeof title, "%s%s: (effect%s)", where, e->name, e->many ? ", a list" : "");
+  print_table(out, title, e->brief, e->keys);
+  if (e->rows) {
+    snprintf(title, sizeof title, "%s%s: %s: (a list)", where, e->name, e->rows->name);
+    print_table(out, title, e->rows->meaning, e->rows->keys);
+  }
+}
+
+/* Sections of scenes that the implicit half runs. */
+static void print_solid(FILE *out)
+{
+  print_table(out, "geometry solid, mesh:", NULL, pw_scene_keys_mesh);
+  print_table(out, "geometry solid, implicit:", NULL, pw_scene_keys_implicit);
+  print_table(out, "geometry solid, output:", NULL, pw_scene_keys_solid_output);
+  print_table(out, "geometry solid, bodies: NAME:", NULL, pw_scene_keys_solid_body);
+  for (int i = 0; pw_solid_effect_at(i); i++) {
+    print_effect(out, pw_solid_effect_at(i), "geometry solid, ");
+  }
+}
+
 void pw_keys_print(FILE *out)
 {
   char title[3 * PW_NAME];
@@ -155,14 +181,9 @@ void pw_keys_print(FILE *out)
   print_table(out, "bodies: NAME: refine: (a list)", "points in a box get this size or smaller",
               pw_scene_keys_refine);
   for (int i = 0; pw_effect_at(i); i++) {
-    const pw_effect *e = pw_effect_at(i);
-    snprintf(title, sizeof title, "%s: (effect%s)", e->name, e->many ? ", a list" : "");
-    print_table(out, title, e->brief, e->keys);
-    if (e->rows) {
-      snprintf(title, sizeof title, "%s: %s: (a list)", e->name, e->rows->name);
-      print_table(out, title, e->rows->meaning, e->rows->keys);
-    }
+    print_effect(out, pw_effect_at(i), "");
   }
+  print_solid(out);
 }
 
 static void print_choices(FILE *out, const char *title, const pw_key *keys, const char *name)
@@ -204,5 +225,9 @@ void pw_list_print(FILE *out)
   fprintf(out, "\neffects\n");
   for (int i = 0; pw_effect_at(i); i++) {
     fprintf(out, "  %-22s  %s\n", pw_effect_at(i)->name, pw_effect_at(i)->brief);
+  }
+  fprintf(out, "\neffects of solid scenes\n");
+  for (int i = 0; pw_solid_effect_at(i); i++) {
+    fprintf(out, "  %-22s  %s\n", pw_solid_effect_at(i)->name, pw_solid_effect_at(i)->brief);
   }
 }

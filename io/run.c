@@ -7,7 +7,7 @@
 #include <unistd.h>
 
 #include "io/progress.h"
-#include "io/restart.h"
+#include "io/run_job.h"
 #include "io/run_outputs.h"
 #include "io/run_signals.h"
 #include "io/scene_file.h"
@@ -18,7 +18,7 @@ typedef struct run {
   const pw_run_options *options;
   FILE *out, *err;
   pw_scene scene;
-  pw_sim *sim;
+  pw_job job;
   pw_run_folder folder;
   int lock; /* file descriptor that keeps other runs out of the folder, or -1 */
   pw_run_outputs outputs;
@@ -75,23 +75,45 @@ static pw_exit choose_folder(run *r)
   return PW_EXIT_FINISHED;
 }
 
+static pw_job_state state_of(const run *r)
+{
+  pw_job_state state;
+  r->job.kind->state(r->job.sim, &state);
+  return state;
+}
+
+/* An error of the engine's that begins with the path of a key is shown at its place. */
+static pw_exit blame_scene(run *r, pw_status status)
+{
+  const pw_run_options *o = r->options;
+  char *messages = pw_scene_locate(o->scene_file, o->nset, o->set, pw_error_text());
+  if (!messages) {
+    return complain(r, PW_EXIT_SCENE, status);
+  }
+  fputs(messages, r->err);
+  fprintf(r->err, "%s: the scene was not run, nothing was written\n", o->scene_file);
+  free(messages);
+  return PW_EXIT_SCENE;
+}
+
 static pw_exit create(run *r)
 {
-  pw_status status = pw_sim_create(&r->scene, r->options->threads, &r->sim);
+  r->job.kind = pw_job_kind_of(&r->scene);
+  pw_status status = r->job.kind->create(&r->scene, r->options->threads, &r->job.sim);
   if (status != PW_OK) {
     bool bad_scene = status == PW_ERR_SCENE || status == PW_ERR_ARGUMENT;
-    return complain(r, bad_scene ? PW_EXIT_SCENE : PW_EXIT_FAILED, status);
+    return bad_scene ? blame_scene(r, status) : complain(r, PW_EXIT_FAILED, status);
   }
-  pw_run_outputs_prepare(&r->outputs, r->sim);
+  pw_run_outputs_prepare(&r->outputs, &r->job, &r->scene);
   if (r->resumed) {
-    status = pw_restart_read(r->folder.checkpoint, r->sim);
+    status = pw_archive_read(r->folder.checkpoint, r->job.kind->archive, r->job.sim);
     if (status != PW_OK) {
       complain(r, PW_EXIT_SCENE, status);
       fprintf(r->err, "the run in %s cannot go on from its checkpoint; nothing was changed\n",
               r->folder.path);
       return PW_EXIT_SCENE;
     }
-    r->first_step = pw_sim_steps(r->sim);
+    r->first_step = state_of(r).steps;
   }
   return PW_EXIT_FINISHED;
 }
@@ -99,25 +121,15 @@ static pw_exit create(run *r)
 static void print_start(run *r)
 {
   const pw_run_options *o = r->options;
-  pw_report report;
 
   if (o->quiet) {
     return;
   }
-  pw_sim_report(r->sim, &report);
   fprintf(r->out, "pilewright %s (%s): %s\n", pw_version(), pw_git_revision(), o->scene_file);
-  const pw_mesh *mesh = pw_sim_mesh(r->sim);
-  char sizes[64];
-  int used = snprintf(sizes, sizeof sizes, "%g m", mesh->cell);
-  if (mesh->graded) {
-    snprintf(sizes + used, sizeof sizes - (size_t)used, " to %g m", pw_mesh_largest_cell(mesh));
-  }
-  fprintf(r->out, "%d points, %d elements of %s in %d blocks of %d colours, %d thread%s%s\n",
-          report.points, report.elements, sizes, report.blocks, report.colours, report.threads,
-          report.threads == 1 ? "" : "s", o->bound ? " bound to cores" : "");
+  r->job.kind->print_sizes(r->job.sim, o->bound, r->out);
   if (r->resumed) {
-    fprintf(r->out, "going on from t = %.6g s, step %lld\n", report.time_s,
-            (long long)report.steps);
+    const pw_job_state state = state_of(r);
+    fprintf(r->out, "going on from t = %.6g s, step %lld\n", state.time_s, (long long)state.steps);
   } else if (o->resume) {
     fprintf(r->out, "%s holds no checkpoint: starting from the beginning\n", r->folder.path);
   }
@@ -134,23 +146,23 @@ static pw_status open_outputs(run *r)
 
 static bool at_end(const run *r)
 {
-  pw_real now = pw_sim_time(r->sim);
+  pw_real now = state_of(r).time_s;
   return pw_output_due(&r->scene, now, now).end;
 }
 
 /* Step until the end, a signal or a failure. */
 static pw_status loop(run *r)
 {
-  pw_real now = pw_sim_time(r->sim);
+  pw_job_state now = state_of(r);
 
   pw_progress_start(&r->progress, r->options->quiet ? NULL : r->out, r->scene.time.end_s,
-                    pw_sim_points(r->sim)->n, now, pw_sim_steps(r->sim));
+                    now.points, now.time_s, now.steps);
   while (!at_end(r) && !pw_run_signals_stop()) {
-    pw_real old = now;
-    PW_TRY(pw_sim_step(r->sim, pw_output_next(&r->scene, old) - old));
-    now = pw_sim_time(r->sim);
+    pw_real old = now.time_s;
+    PW_TRY(r->job.kind->step(r->job.sim, pw_output_next(&r->scene, old) - old));
+    now = state_of(r);
     PW_TRY(pw_run_outputs_step(&r->outputs, old));
-    pw_progress_step(&r->progress, now, pw_sim_steps(r->sim), now - old);
+    pw_progress_step(&r->progress, now.time_s, now.steps, now.time_s - old);
   }
   return PW_OK;
 }
@@ -160,7 +172,7 @@ static void print_results(run *r)
   pw_record *results = &r->outputs.row;
 
   results->n = 0;
-  pw_sim_results(r->sim, results);
+  r->job.kind->results(r->job.sim, results);
   for (int i = 0; i < results->n; i++) {
     const pw_record_item *item = &results->item[i];
     fprintf(r->out, "  %-32s", item->name);
@@ -182,9 +194,7 @@ static void print_results(run *r)
 static void print_end(run *r, const char *word, bool with_results)
 {
   char wall[32];
-  pw_report report;
-
-  pw_sim_report(r->sim, &report);
+  const pw_job_state report = state_of(r);
   pw_real made = (pw_real)(report.steps - r->first_step);
   pw_real speed = report.wall_s > 0.0 ? (pw_real)report.points * made / report.wall_s : 0.0;
   pw_progress_clear(&r->progress);
@@ -207,7 +217,7 @@ static pw_status write_summary(run *r, const char *word, const char *error)
       .nwarning = r->outputs.nwarning,
       .warning = r->outputs.warning,
   };
-  return pw_summary_write(r->folder.summary, r->sim, &info);
+  return r->job.kind->summary(r->folder.summary, r->job.sim, &info);
 }
 
 /* The failed state is not saved: the checkpoint on the disk is the last good one. */
@@ -293,7 +303,9 @@ pw_exit pw_run(const pw_run_options *options, FILE *out, FILE *err)
     close(r->lock);
   }
   pw_run_outputs_close(&r->outputs);
-  pw_sim_destroy(&r->sim);
+  if (r->job.kind) {
+    r->job.kind->destroy(&r->job.sim);
+  }
   free(r);
   return code;
 }

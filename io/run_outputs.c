@@ -38,35 +38,46 @@ static pw_status warn_of(pw_run_outputs *o, pw_status s)
 static pw_status write_row(pw_run_outputs *o)
 {
   o->row.n = 0;
-  pw_sim_history(o->sim, &o->row);
+  o->job->kind->history(o->job->sim, &o->row);
   return pw_history_append(o->history, &o->row);
+}
+
+static pw_job_state state_of(const pw_run_outputs *o)
+{
+  pw_job_state state;
+  o->job->kind->state(o->job->sim, &state);
+  return state;
 }
 
 static pw_status write_due(pw_run_outputs *o, pw_due due)
 {
+  const pw_job_kind *kind = o->job->kind;
   if (due.history) {
     PW_TRY(write_row(o));
   }
   if (due.snapshot && o->snapshots) {
-    PW_TRY(pw_snapshots_write(o->snapshots, o->sim));
+    PW_TRY(kind->snapshot(o->snapshots, o->job->sim));
   }
-  if (due.end && o->snapshots) {
-    PW_TRY(pw_snapshots_grid(o->snapshots, o->sim));
+  if (due.end && o->snapshots && kind->last_snapshot) {
+    PW_TRY(kind->last_snapshot(o->snapshots, o->job->sim));
   }
   if (due.picture) {
-    PW_TRY(warn_of(o, pw_pictures_fields(o->folder->pictures, o->sim)));
+    PW_TRY(warn_of(o, kind->pictures(o->folder->pictures, o->job->sim)));
   }
   return PW_OK;
 }
 
 pw_status pw_run_outputs_checkpoint(pw_run_outputs *o)
 {
-  if (o->checkpoint_step == pw_sim_steps(o->sim)) {
+  const pw_job_state now = state_of(o);
+  if (o->checkpoint_step == now.steps) {
     return PW_OK;
   }
+  pw_restart_stamp stamp = {.time_s = now.time_s, .step = now.steps};
+  snprintf(stamp.title, sizeof stamp.title, "%s", o->scene->title);
   PW_TRY(pw_history_sync(o->history));
-  PW_TRY(pw_restart_write(o->folder->checkpoint, o->sim));
-  o->checkpoint_step = pw_sim_steps(o->sim);
+  PW_TRY(pw_archive_write(o->folder->checkpoint, &stamp, o->job->kind->archive, o->job->sim));
+  o->checkpoint_step = now.steps;
   o->checkpoint_wall_s = pw_wall_clock();
   return PW_OK;
 }
@@ -77,12 +88,12 @@ static pw_status open_files(pw_run_outputs *o, bool resumed)
   pw_status status = PW_OK;
 
   if (resumed) {
-    PW_TRY(pw_history_resume(f->history, &o->header, pw_sim_steps(o->sim), &o->history));
+    PW_TRY(pw_history_resume(f->history, &o->header, state_of(o).steps, &o->history));
   } else {
     PW_TRY(pw_history_open(f->history, &o->header, &o->history));
   }
-  if (pw_sim_scene(o->sim)->output.paraview) {
-    status = resumed ? pw_snapshots_resume(f->paraview, pw_sim_time(o->sim), &o->snapshots)
+  if (o->scene->output.paraview) {
+    status = resumed ? pw_snapshots_resume(f->paraview, state_of(o).time_s, &o->snapshots)
                      : pw_snapshots_open(f->paraview, &o->snapshots);
     if (status == PW_ERR_UNSUPPORTED) {
       status = warn_of(o, status);
@@ -91,29 +102,35 @@ static pw_status open_files(pw_run_outputs *o, bool resumed)
   return status;
 }
 
-void pw_run_outputs_prepare(pw_run_outputs *o, pw_sim *sim)
+void pw_run_outputs_prepare(pw_run_outputs *o, const pw_job *job, const pw_scene *scene)
 {
-  o->sim = sim;
+  o->job = job;
+  o->scene = scene;
   o->header.n = 0;
-  pw_sim_history(sim, &o->header);
+  job->kind->history(job->sim, &o->header);
 }
 
 pw_status pw_run_outputs_open(pw_run_outputs *o, const pw_run_folder *folder, bool resumed)
 {
   o->folder = folder;
-  o->checkpoint_step = resumed ? pw_sim_steps(o->sim) : -1;
+  o->checkpoint_step = resumed ? state_of(o).steps : -1;
   o->checkpoint_wall_s = pw_wall_clock();
   PW_TRY(open_files(o, resumed));
   if (resumed) {
     return PW_OK;
   }
-  PW_TRY(write_due(o, pw_output_due(pw_sim_scene(o->sim), -1.0, pw_sim_time(o->sim))));
+  PW_TRY(write_due(o, pw_output_due(o->scene, -1.0, state_of(o).time_s)));
   return pw_run_outputs_checkpoint(o);
 }
 
 pw_status pw_run_outputs_step(pw_run_outputs *o, pw_real old_s)
 {
-  pw_due due = pw_output_due(pw_sim_scene(o->sim), old_s, pw_sim_time(o->sim));
+  pw_due due = pw_output_due(o->scene, old_s, state_of(o).time_s);
+  const char *text;
+
+  for (int i = 0; o->job->kind->warning && (text = o->job->kind->warning(o->job->sim, i)); i++) {
+    pw_run_outputs_warn(o, text);
+  }
 
   PW_TRY(write_due(o, due));
   if (due.checkpoint || due.end || pw_wall_clock() - o->checkpoint_wall_s > CHECKPOINT_WALL_S) {
@@ -124,7 +141,7 @@ pw_status pw_run_outputs_step(pw_run_outputs *o, pw_real old_s)
 
 pw_status pw_run_outputs_finish(pw_run_outputs *o)
 {
-  const pw_scene *scene = pw_sim_scene(o->sim);
+  const pw_scene *scene = o->scene;
 
   if (scene->output.pictures) {
     PW_TRY(warn_of(o, pw_pictures_finish(o->folder->pictures)));

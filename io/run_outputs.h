@@ -10,17 +10,17 @@
 #ifndef PW_IO_RUN_OUTPUTS_H
 #define PW_IO_RUN_OUTPUTS_H
 
-#include "engine/sim.h"
 #include "io/history.h"
 #include "io/output_times.h"
 #include "io/run_folder.h"
-#include "io/snapshot.h"
+#include "io/run_job.h"
 
 enum { PW_WARNINGS = 16, PW_WARNING_TEXT = 512 };
 
 typedef struct pw_run_outputs {
   const pw_run_folder *folder;
-  pw_sim *sim;
+  const pw_job *job;
+  const pw_scene *scene; /**< as read: times of outputs */
   pw_history *history;
   pw_snapshots *snapshots;   /**< NULL: none wanted, or built without VTK */
   pw_real checkpoint_wall_s; /**< wall clock of the last checkpoint */
@@ -36,7 +36,7 @@ typedef struct pw_run_outputs {
  * @brief Ask a new simulation for the names of its history, before a checkpoint is loaded: asking
  *        for a row ends the interval over which effects take means.
  */
-void pw_run_outputs_prepare(pw_run_outputs *o, pw_sim *sim);
+void pw_run_outputs_prepare(pw_run_outputs *o, const pw_job *job, const pw_scene *scene);
 
 /**
  * @brief Open the files of a run at its start, or, when @p resumed, those of the run whose

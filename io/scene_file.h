@@ -31,4 +31,13 @@ pw_status pw_scene_read_file(const char *path, int nset, const char *const *set,
 pw_status pw_scene_read_text(const char *text, size_t length, const char *name, int nset,
                              const char *const *set, pw_scene *out, char **messages);
 
+/**
+ * @brief Show a message that begins with the path of a key, "boundary.2.group: the mesh has no ...",
+ *        at the key's place in a scene file that was read without errors.
+ * @param[in] nset, set as given when it was read
+ * @return text as of pw_scene_read_file(), to be freed by the caller; NULL when @p message begins
+ *         with no key of the file, or when memory ran out.
+ */
+char *pw_scene_locate(const char *path, int nset, const char *const *set, const char *message);
+
 #endif /* PW_IO_SCENE_FILE_H */

@@ -48,8 +48,7 @@ static bool all_clean(const pw_reader_part *part, int n)
   return true;
 }
 
-/* Rules are applied only where all they look at is clean: no errors that follow from errors. */
-void pw_reader_check(pw_reader *r)
+static void check_plane(pw_reader *r)
 {
   const pw_scene *s = r->scene;
   r->grid.clean =
@@ -57,8 +56,28 @@ void pw_reader_check(pw_reader *r)
   if (r->time.clean) {
     report(r, pw_scene_check_time(s), r->time.node);
   }
+  if (r->method.clean) {
+    report(r, pw_scene_check_method(s), r->method.node);
+  }
   if (r->output.clean) {
     report(r, pw_scene_check_output(s), r->output.node);
+  }
+}
+
+/* Rules are applied only where all they look at is clean: no errors that follow from errors. */
+void pw_reader_check(pw_reader *r)
+{
+  const pw_scene *s = r->scene;
+  if (s->geometry == PW_SOLID) {
+    r->grid.clean = true; /* no rule of bodies and effects looks at the mesh */
+    if (r->mesh.clean) {
+      report(r, pw_scene_check_mesh(s), r->mesh.node);
+    }
+    if (r->implicit.clean) {
+      report(r, pw_scene_check_implicit(s), r->implicit.node);
+    }
+  } else {
+    check_plane(r);
   }
   for (int i = 0; i < s->nmaterial; i++) {
     r->material[i].clean =

@@ -154,10 +154,12 @@ static void read_body(pw_reader *r, int i)
   const pw_yaml_node *refine = pw_yaml_find(node, "refine");
   char title[TITLE];
   snprintf(title, sizeof title, "bodies.%s", b->name);
-  pw_reader_section s = {title, pw_scene_keys_body, b, 1, extra};
-  pw_scene_defaults(pw_scene_keys_body, b);
+  const bool solid = r->scene->geometry == PW_SOLID;
+  const pw_key *keys = solid ? pw_scene_keys_solid_body : pw_scene_keys_body;
+  pw_reader_section s = {title, keys, b, !solid, extra};
+  pw_scene_defaults(keys, b);
   bool clean = pw_reader_keys(r, &s, node);
-  if (refine) {
+  if (refine && !solid) {
     clean = read_refine(r, refine, title, b) && clean;
   }
   if (b->shape == PW_SHAPE_PILE && b->tip != PW_TIP_FLAT && b->tip_length_m == 0) {
@@ -259,7 +261,7 @@ static bool read_effect(pw_reader *r, const pw_effect *type, const pw_yaml_node 
 void pw_reader_effects(pw_reader *r)
 {
   for (const pw_yaml_node *node = r->root->first; node; node = node->next) {
-    const pw_effect *type = node->earlier ? NULL : pw_effect_find(node->key);
+    const pw_effect *type = node->earlier ? NULL : pw_effect_of(r->scene, node->key);
     if (type && !read_effect(r, type, node)) {
       return;
     }

@@ -24,6 +24,7 @@ typedef struct pw_reader {
   pw_scene *scene;
   bool geometry_known; /**< plane strain or axisymmetric: the rules on places depend on it */
   pw_reader_part grid, time, method, output;
+  pw_reader_part mesh, implicit; /**< of a solid scene */
   pw_reader_part material[PW_MAX_MATERIALS];
   pw_reader_part body[PW_MAX_BODIES];
   pw_reader_part effect[PW_MAX_EFFECTS];

@@ -103,7 +103,9 @@ static bool read_int(pw_reader *r, const pw_key *key, const pw_yaml_node *node, 
 static bool read_list(pw_reader *r, const pw_key *key, const pw_yaml_node *node, int lo, int hi,
                       pw_key_value *out)
 {
-  const char *wanted = lo == hi ? "two numbers [a, b]" : "a list of numbers [a, b, ...]";
+  const char *wanted = hi == 2   ? "two numbers [a, b]"
+                       : hi == 3 ? "three numbers [x, y, z]"
+                                 : "a list of numbers [a, b, ...]";
   if (node->kind != PW_YAML_LIST) {
     return wrong_type(r, key, node, wanted);
   }
@@ -250,6 +252,8 @@ bool pw_reader_value(pw_reader *r, const pw_key *key, const pw_yaml_node *node, 
     return read_number(r, key, node, out->v);
   case PW_KEY_PAIR:
     return read_list(r, key, node, 2, 2, out);
+  case PW_KEY_TRIPLE:
+    return read_list(r, key, node, 3, 3, out);
   case PW_KEY_REALS:
     return read_list(r, key, node, 0, PW_LIST, out);
   case PW_KEY_INT:

@@ -21,8 +21,14 @@ enum {
 
 typedef struct snapshot_entry {
   pw_real time_s;
-  bool outline;
+  pw_snapshot_part part;
 } snapshot_entry;
+
+/* Files beside points_k.vtp. */
+static const char *const part_file[] = {
+    [PW_SNAPSHOT_OUTLINE] = "outline_%04d.vtp",
+    [PW_SNAPSHOT_MESH] = "mesh_%04d.vtu",
+};
 
 struct pw_snapshots {
   char folder[PW_PATH];
@@ -32,7 +38,7 @@ struct pw_snapshots {
 
 /* ---- collection ---- */
 
-static pw_status add_entry(pw_snapshots *s, pw_real time_s, bool outline)
+static pw_status add_entry(pw_snapshots *s, pw_real time_s, pw_snapshot_part part)
 {
   if (s->n == s->room) {
     int room = s->room ? 2 * s->room : 64;
@@ -45,13 +51,13 @@ static pw_status add_entry(pw_snapshots *s, pw_real time_s, bool outline)
     s->entry = larger;
     s->room = room;
   }
-  s->entry[s->n++] = (snapshot_entry){time_s, outline};
+  s->entry[s->n++] = (snapshot_entry){time_s, part};
   return PW_OK;
 }
 
 static pw_status write_collection(const pw_snapshots *s)
 {
-  char path[PW_PATH], *text = NULL;
+  char path[PW_PATH], file[LINE], *text = NULL;
   size_t size = (size_t)(2 * s->n + 5) * LINE, used = 0;
   PW_TRY(pw_path_join(s->folder, "run.pvd", path));
   PW_TRY(pw_mem_alloc("collection of snapshots", (pw_off)size, 1, &text));
@@ -62,8 +68,9 @@ static pw_status write_collection(const pw_snapshots *s)
   for (int k = 0; k < s->n; k++) {
     const pw_real t = s->entry[k].time_s;
     ADD("    <DataSet timestep=\"%.17g\" part=\"0\" file=\"points_%04d.vtp\"/>\n", t, k);
-    if (s->entry[k].outline) {
-      ADD("    <DataSet timestep=\"%.17g\" part=\"1\" file=\"outline_%04d.vtp\"/>\n", t, k);
+    if (s->entry[k].part != PW_SNAPSHOT_POINTS) {
+      snprintf(file, sizeof file, part_file[s->entry[k].part], k);
+      ADD("    <DataSet timestep=\"%.17g\" part=\"1\" file=\"%s\"/>\n", t, file);
     }
   }
   ADD("  </Collection>\n</VTKFile>\n");
@@ -92,9 +99,10 @@ static pw_status read_collection(pw_snapshots *s, pw_real last_s)
       continue;
     }
     if (part == 0) {
-      status = add_entry(s, time_s, false);
+      status = add_entry(s, time_s, PW_SNAPSHOT_POINTS);
     } else if (s->n > 0) {
-      s->entry[s->n - 1].outline = true;
+      const bool mesh = strstr(line, "file=\"mesh_") != NULL;
+      s->entry[s->n - 1].part = mesh ? PW_SNAPSHOT_MESH : PW_SNAPSHOT_OUTLINE;
     }
   }
   fclose(file);
@@ -136,6 +144,23 @@ void pw_snapshots_close(pw_snapshots **s)
     pw_mem_free(&(*s)->entry);
   }
   pw_mem_free(s);
+}
+
+pw_status pw_snapshots_path(const pw_snapshots *s, pw_snapshot_part part, char *path)
+{
+  char name[LINE];
+  if (part == PW_SNAPSHOT_POINTS) {
+    snprintf(name, sizeof name, "points_%04d.vtp", s->n);
+  } else {
+    snprintf(name, sizeof name, part_file[part], s->n);
+  }
+  return pw_path_join(s->folder, name, path);
+}
+
+pw_status pw_snapshots_add(pw_snapshots *s, pw_real time_s, pw_snapshot_part part)
+{
+  PW_TRY(add_entry(s, time_s, part));
+  return write_collection(s);
 }
 
 /* ---- values of the points ---- */
@@ -366,16 +391,13 @@ static pw_status write_outline(const char *path, const pw_sim *sim, bool *writte
 
 pw_status pw_snapshots_write(pw_snapshots *s, const pw_sim *sim)
 {
-  char name[LINE], path[PW_PATH];
+  char path[PW_PATH];
   bool outline = false;
-  snprintf(name, sizeof name, "points_%04d.vtp", s->n);
-  PW_TRY(pw_path_join(s->folder, name, path));
+  PW_TRY(pw_snapshots_path(s, PW_SNAPSHOT_POINTS, path));
   PW_TRY(write_points(path, sim));
-  snprintf(name, sizeof name, "outline_%04d.vtp", s->n);
-  PW_TRY(pw_path_join(s->folder, name, path));
+  PW_TRY(pw_snapshots_path(s, PW_SNAPSHOT_OUTLINE, path));
   PW_TRY(write_outline(path, sim, &outline));
-  PW_TRY(add_entry(s, pw_sim_time(sim), outline));
-  return write_collection(s);
+  return pw_snapshots_add(s, pw_sim_time(sim), outline ? PW_SNAPSHOT_OUTLINE : PW_SNAPSHOT_POINTS);
 }
 
 /* ---- background grid ---- */

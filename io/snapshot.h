@@ -40,6 +40,21 @@ pw_status pw_snapshots_write(pw_snapshots *s, const pw_sim *sim);
  *  @return as pw_snapshots_write. */
 pw_status pw_snapshots_grid(pw_snapshots *s, const pw_sim *sim);
 
+/** Files of one time: the points, and what else there is. */
+typedef enum pw_snapshot_part {
+  PW_SNAPSHOT_POINTS,  /**< alone */
+  PW_SNAPSHOT_OUTLINE, /**< outline_NNNN.vtp */
+  PW_SNAPSHOT_MESH,    /**< mesh_NNNN.vtu of a solid scene (io/solid_snapshot.h) */
+} pw_snapshot_part;
+
+/** @brief Name of the file that a part has next. @param[out] path [PW_PATH]
+ *  @return PW_OK; PW_ERR_FILE when it is too long. */
+pw_status pw_snapshots_path(const pw_snapshots *s, pw_snapshot_part part, char *path);
+
+/** @brief Take the files written under those names into the collection. @return as
+ *  pw_snapshots_write. */
+pw_status pw_snapshots_add(pw_snapshots *s, pw_real time_s, pw_snapshot_part part);
+
 /** @brief Free and null; NULL is accepted. */
 void pw_snapshots_close(pw_snapshots **s);
 

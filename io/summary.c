@@ -178,6 +178,53 @@ static void put_size_and_time(json_t *root, const pw_report *r, pw_off first_ste
   put(root, "bytes_per_point", json_integer(r->bytes_per_point), bad);
 }
 
+static void put_implicit_sizes(json_t *root, const pw_implicit_report *r, pw_off first_step,
+                               bool *bad)
+{
+  const pw_real work = (pw_real)r->points * (pw_real)(r->steps - first_step);
+  put(root, "threads", json_integer(r->threads), bad);
+  put(root, "points", json_integer(r->points), bad);
+  put(root, "nodes", json_integer(r->nodes), bad);
+  put(root, "cells", json_integer(r->cells), bad);
+  put(root, "elements", json_integer(r->elements), bad);
+  put(root, "blocks", json_integer(r->blocks), bad);
+  put(root, "colours", json_integer(r->colours), bad);
+  put(root, "equations", json_integer(r->equations), bad);
+  put(root, "matrix_nonzeros", json_integer(r->nonzeros), bad);
+  put(root, "steps", json_integer(r->steps), bad);
+  put(root, "first_step", json_integer(first_step), bad);
+  put(root, "sim_time_s", number(r->time_s), bad);
+  put(root, "wall_s", number(r->wall_s), bad);
+  put(root, "point_steps_per_s", number(r->wall_s > 0.0 ? work / r->wall_s : 0.0), bad);
+  put(root, "peak_rss_bytes", json_integer(peak_rss_bytes()), bad);
+  put(root, "bytes_per_point", json_integer(r->bytes_per_point), bad);
+}
+
+static json_t *solver_json(const pw_implicit_report *r, bool *bad)
+{
+  json_t *object = json_object();
+  put(object, "description", text(r->solver_text), bad);
+  put(object, "iterations", json_integer(r->iterations), bad);
+  put(object, "cuts", json_integer(r->cuts), bad);
+  put(object, "parts", json_integer(r->parts), bad);
+  put(object, "analyses", json_integer(r->solver.analyses), bad);
+  put(object, "factorisations", json_integer(r->solver.factors), bad);
+  put(object, "indefinite", json_integer(r->solver.indefinite), bad);
+  put(object, "factor_nonzeros", json_integer(r->solver.factor_nonzeros), bad);
+  return object;
+}
+
+static json_t *walk_json(const pw_walk_counts *w, bool *bad)
+{
+  json_t *object = json_object();
+  put(object, "searches", json_integer(w->points), bad);
+  put(object, "tests", json_integer(w->tests), bad);
+  put(object, "changed_element", json_integer(w->moved), bad);
+  put(object, "ties", json_integer(w->ties), bad);
+  put(object, "by_bins", json_integer(w->binned), bad);
+  return object;
+}
+
 static pw_status save(const char *path, const json_t *root)
 {
   char *dump = json_dumps(root, JSON_INDENT(2) | JSON_PRESERVE_ORDER | JSON_REAL_PRECISION(15));
@@ -186,6 +233,20 @@ static pw_status save(const char *path, const json_t *root)
   dump[length] = '\n'; /* in place of the closing zero, which is not written */
   pw_status status = pw_atomic_write(path, dump, length + 1);
   free(dump);
+  return status;
+}
+
+/* Write what was put together, or tell that memory ran out. */
+static pw_status finish(const char *path, json_t *root, bool bad)
+{
+  pw_status status;
+  if (root && !bad) {
+    status = save(path, root);
+  } else {
+    status = pw_error_set(PW_ERR_MEMORY, __FILE__, __LINE__, __func__,
+                          "cannot allocate the contents of %s", path);
+  }
+  json_decref(root);
   return status;
 }
 
@@ -201,15 +262,7 @@ pw_status pw_summary_write_parts(const char *path, const pw_scene *scene, const 
   put(root, "counters", counters_json(report, &bad), &bad);
   put(root, "results", results_json(results, &bad), &bad);
   put(root, "warnings", warnings_json(info, &bad), &bad);
-  pw_status status;
-  if (root && !bad) {
-    status = save(path, root);
-  } else {
-    status = pw_error_set(PW_ERR_MEMORY, __FILE__, __LINE__, __func__,
-                          "cannot allocate the contents of %s", path);
-  }
-  json_decref(root);
-  return status;
+  return finish(path, root, bad);
 }
 
 pw_status pw_summary_write(const char *path, const pw_sim *sim, const pw_summary_info *info)
@@ -219,4 +272,22 @@ pw_status pw_summary_write(const char *path, const pw_sim *sim, const pw_summary
   pw_sim_report(sim, &report);
   pw_sim_results(sim, &results);
   return pw_summary_write_parts(path, pw_sim_scene(sim), &report, &results, info);
+}
+
+pw_status pw_summary_write_implicit(const char *path, const pw_implicit *sim,
+                                    const pw_summary_info *info)
+{
+  bool bad = false;
+  pw_implicit_report report;
+  pw_record results = {.n = 0};
+  json_t *root = json_object();
+  pw_implicit_report_now(sim, &report);
+  pw_implicit_results(sim, &results);
+  put_head(root, pw_implicit_scene(sim), info, &bad);
+  put_implicit_sizes(root, &report, info->first_step, &bad);
+  put(root, "solver", solver_json(&report, &bad), &bad);
+  put(root, "walk", walk_json(&report.walked, &bad), &bad);
+  put(root, "results", results_json(&results, &bad), &bad);
+  put(root, "warnings", warnings_json(info, &bad), &bad);
+  return finish(path, root, bad);
 }

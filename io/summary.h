@@ -6,6 +6,7 @@
 #ifndef PW_IO_SUMMARY_H
 #define PW_IO_SUMMARY_H
 
+#include "engine/implicit.h"
 #include "engine/sim.h"
 
 /** What the run loop knows and the engine does not; all texts borrowed. */
@@ -29,6 +30,10 @@ pw_status pw_summary_write(const char *path, const pw_sim *sim, const pw_summary
 /** @brief The same from its parts, for callers that keep them. @return as pw_summary_write. */
 pw_status pw_summary_write_parts(const char *path, const pw_scene *scene, const pw_report *report,
                                  const pw_record *results, const pw_summary_info *info);
+
+/** @brief The same of an implicit simulation. @return likewise. */
+pw_status pw_summary_write_implicit(const char *path, const pw_implicit *sim,
+                                    const pw_summary_info *info);
 
 /** @brief Version of the program, "0.1.0". */
 const char *pw_version(void);

@@ -16,16 +16,20 @@
 #include <vtkNew.h>
 #include <vtkPointData.h>
 #include <vtkPoints.h>
+#include <vtkPointSet.h>
 #include <vtkPolyData.h>
 #include <vtkRectilinearGrid.h>
 #include <vtkSmartPointer.h>
 #include <vtkTypeInt32Array.h>
+#include <vtkUnstructuredGrid.h>
 #include <vtkXMLImageDataReader.h>
 #include <vtkXMLImageDataWriter.h>
 #include <vtkXMLPolyDataReader.h>
 #include <vtkXMLPolyDataWriter.h>
 #include <vtkXMLRectilinearGridReader.h>
 #include <vtkXMLRectilinearGridWriter.h>
+#include <vtkXMLUnstructuredGridReader.h>
+#include <vtkXMLUnstructuredGridWriter.h>
 
 extern "C" {
 #include "io/atomic_file.h"
@@ -132,7 +136,11 @@ vtkSmartPointer<vtkPolyData> build_cells(const pw_vtk_cells &in)
   points->SetDataTypeToFloat();
   points->SetNumberOfPoints(npoint);
   for (pw_idx i = 0; i < npoint; i++) {
-    points->SetPoint(i, in.xy[2 * i], in.xy[2 * i + 1], 0.0);
+    if (in.xyz) {
+      points->SetPoint(i, in.xyz + 3 * i);
+    } else {
+      points->SetPoint(i, in.xy[2 * i], in.xy[2 * i + 1], 0.0);
+    }
   }
   vtkNew<vtkCellArray> cells;
   cells->Use32BitStorage();
@@ -156,6 +164,31 @@ vtkSmartPointer<vtkPolyData> build_cells(const pw_vtk_cells &in)
     break;
   }
   add_arrays(data->GetCellData(), in.array, in.narray, in.ncell);
+  add_time(data, in.time_s);
+  return data;
+}
+
+vtkSmartPointer<vtkUnstructuredGrid> build_tets(const pw_vtk_tets &in)
+{
+  vtkNew<vtkPoints> points;
+  points->SetDataTypeToFloat();
+  points->SetNumberOfPoints(in.nnode);
+  for (pw_idx i = 0; i < in.nnode; i++) {
+    points->SetPoint(i, in.xyz + 3 * i);
+  }
+  vtkNew<vtkCellArray> cells;
+  cells->Use32BitStorage();
+  for (pw_idx e = 0; e < in.nelem; e++) {
+    cells->InsertNextCell(4);
+    for (pw_idx k = 0; k < 4; k++) {
+      cells->InsertCellPoint(in.node[4 * e + k]);
+    }
+  }
+  auto data = vtkSmartPointer<vtkUnstructuredGrid>::New();
+  data->SetPoints(points);
+  data->SetCells(VTK_TETRA, cells);
+  add_arrays(data->GetPointData(), in.node_array, in.nnode_array, in.nnode);
+  add_arrays(data->GetCellData(), in.elem_array, in.nelem_array, in.nelem);
   add_time(data, in.time_s);
   return data;
 }
@@ -217,6 +250,9 @@ pw_status read_array(const char *path, const char *name, float *value, pw_off ma
   vtkSmartPointer<vtkDataSet> data = read_object<vtkXMLPolyDataReader>(path);
   const bool cells = data != nullptr;
   if (!cells) {
+    data = read_object<vtkXMLUnstructuredGridReader>(path);
+  }
+  if (!data) {
     data = read_object<vtkXMLImageDataReader>(path);
   }
   if (!data) {
@@ -228,8 +264,9 @@ pw_status read_array(const char *path, const char *name, float *value, pw_off ma
   vtkFieldData *fields = cells ? static_cast<vtkFieldData *>(data->GetCellData())
                                : static_cast<vtkFieldData *>(data->GetPointData());
   vtkDataArray *array = name ? fields->GetArray(name) : nullptr;
-  if (!name && cells) {
-    array = vtkPolyData::SafeDownCast(data)->GetPoints()->GetData();
+  vtkPointSet *set = vtkPointSet::SafeDownCast(data);
+  if (!name && set) {
+    array = set->GetPoints()->GetData();
   }
   if (!array) {
     return fail(PW_ERR_FILE, path, "no such array");
@@ -257,6 +294,12 @@ extern "C" pw_status pw_vtk_write_cells(const char *path, const pw_vtk_cells *ce
 {
   return guarded(path,
                  [=] { return write_object<vtkXMLPolyDataWriter>(path, build_cells(*cells)); });
+}
+
+extern "C" pw_status pw_vtk_write_tets(const char *path, const pw_vtk_tets *tets)
+{
+  return guarded(
+      path, [=] { return write_object<vtkXMLUnstructuredGridWriter>(path, build_tets(*tets)); });
 }
 
 extern "C" pw_status pw_vtk_write_grid(const char *path, const pw_vtk_grid *grid)

@@ -34,10 +34,21 @@ typedef struct pw_vtk_cells {
   pw_idx ncell;
   const pw_idx *start; /**< [ncell + 1] */
   const float *xy;     /**< [start[ncell]][2] m */
+  const float *xyz;    /**< [start[ncell]][3] m instead, or NULL */
   int narray;
   const pw_vtk_array *array; /**< [narray] cell data */
   pw_real time_s;
 } pw_vtk_cells;
+
+/** Linear tetrahedra with values of nodes and of elements. */
+typedef struct pw_vtk_tets {
+  pw_idx nnode, nelem;
+  const float *xyz;   /**< [nnode][3] m */
+  const pw_idx *node; /**< [nelem][4] */
+  int nnode_array, nelem_array;
+  const pw_vtk_array *node_array, *elem_array;
+  pw_real time_s;
+} pw_vtk_tets;
 
 /** A structured grid of nodes, x first. */
 typedef struct pw_vtk_grid {
@@ -52,7 +63,7 @@ typedef struct pw_vtk_grid {
 /** What is in a file: see pw_vtk_read_array. */
 typedef struct pw_vtk_shape {
   pw_off points, cells; /**< of the whole file */
-  int narray;           /**< arrays of cell data (.vtp) or node data (.vti, .vtr) */
+  int narray;           /**< arrays of cell data (.vtp) or node data (.vtu, .vti, .vtr) */
   int ncomp;            /**< components of the array asked for */
   pw_off count;         /**< values of it: tuples times ncomp */
   pw_real time_s;
@@ -71,9 +82,13 @@ pw_status pw_vtk_write_cells(const char *path, const pw_vtk_cells *cells);
 /** @brief Write a .vti file, of a graded grid a .vtr file. @return as pw_vtk_write_cells. */
 pw_status pw_vtk_write_grid(const char *path, const pw_vtk_grid *grid);
 
+/** @brief Write a .vtu file. @return as pw_vtk_write_cells. */
+pw_status pw_vtk_write_tets(const char *path, const pw_vtk_tets *tets);
+
 /**
- * @brief Read one array of a .vtp, .vti or .vtr file back with VTK's own reader.
- * @param[in]  name  of the array; NULL: the coordinates of the points, three components (.vtp)
+ * @brief Read one array of a .vtp, .vtu, .vti or .vtr file back with VTK's own reader.
+ * @param[in]  name  of the array; NULL: the coordinates of the points, three components (.vtp,
+ *                   .vtu)
  * @param[out] value [max] the first @p max values
  * @return PW_OK; PW_ERR_FILE when the file cannot be read or has no such array;
  *         PW_ERR_UNSUPPORTED.

@@ -18,6 +18,12 @@ pw_status pw_vtk_write_cells(const char *path, const pw_vtk_cells *cells)
   REFUSE(path);
 }
 
+pw_status pw_vtk_write_tets(const char *path, const pw_vtk_tets *tets)
+{
+  (void)tets;
+  REFUSE(path);
+}
+
 pw_status pw_vtk_write_grid(const char *path, const pw_vtk_grid *grid)
 {
   (void)grid;

@@ -104,6 +104,7 @@ pw_status pw_element_move(pw_element *el, const pw_real *de, const pw_real *spin
                          .stress = next.stress,
                          .state = next.state,
                          .wave_speed = &next.wave_speed,
+                         .of_f = el->material->of_f,
                          .tangent = tangent,
                          .counts = &next.counts};
   pw_status s = el->material->update(el->param, &args);

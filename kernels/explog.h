@@ -85,4 +85,24 @@ PW_INLINE pw_real pw_log(pw_real x)
   return PW_FMA(k, PW_LN2_HI, s2 + PW_FMA(s2 * z, p, tail));
 }
 
+/** @brief exp(x) - 1; a series for small x, where the difference cancels. */
+PW_INLINE pw_real pw_exp_less_one(pw_real x)
+{
+  pw_real s = 1.0 / 6227020800.0; /* 13! */
+  s = PW_FMA(s, x, 1.0 / 479001600.0);
+  s = PW_FMA(s, x, 1.0 / 39916800.0);
+  s = PW_FMA(s, x, 1.0 / 3628800.0);
+  s = PW_FMA(s, x, 1.0 / 362880.0);
+  s = PW_FMA(s, x, 1.0 / 40320.0);
+  s = PW_FMA(s, x, 1.0 / 5040.0);
+  s = PW_FMA(s, x, 1.0 / 720.0);
+  s = PW_FMA(s, x, 1.0 / 120.0);
+  s = PW_FMA(s, x, 1.0 / 24.0);
+  s = PW_FMA(s, x, 1.0 / 6.0);
+  s = PW_FMA(s, x, 0.5);
+  s = PW_FMA(s, x, 1.0);
+  pw_real full = pw_exp(x) - 1.0;
+  return x * x < 0.0625 ? x * s : full;
+}
+
 #endif /* PW_KERNELS_EXPLOG_H */

@@ -3,8 +3,7 @@
 
 #include "kernels/hypoplastic_lanes.h"
 
-/** Points taken at once: a multiple of any vector length, few enough to stay in cache. */
-enum { LANES = 16 };
+enum { LANES = PW_HYPO_LANES };
 
 typedef pw_real lane_tensor[6][LANES];
 
@@ -139,6 +138,12 @@ PW_INLINE int scatter(const pw_hypo *h, const pw_stress_args *a, group *g, pw_id
 
 void pw_hypo_advance_smooth(const pw_hypo *h, bool plane, const pw_stress_args *a, pw_real *done)
 {
+  pw_hypo_smooth_with(h, stages[h->form], plane, a, done);
+}
+
+void pw_hypo_smooth_with(const pw_hypo *h, const pw_hypo_stage_fn rates[2], bool plane,
+                         const pw_stress_args *a, pw_real *done)
+{
   group g;
   const pw_hypo_substep s = {g.stress[0],
                              g.delta[0],
@@ -159,7 +164,7 @@ void pw_hypo_advance_smooth(const pw_hypo *h, bool plane, const pw_stress_args *
       memset(done + first, 0, (size_t)n * sizeof *done);
       continue;
     }
-    pw_hypo_substep_lanes(h, &s, LANES, stages[h->form]);
+    pw_hypo_substep_lanes(h, &s, LANES, rates);
     int count = n == LANES ? scatter(h, a, &g, first, LANES, done + first)
                            : scatter(h, a, &g, first, n, done + first);
     if (a->counts) {

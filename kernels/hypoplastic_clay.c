@@ -1,7 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "kernels/hypoplastic_clay.h"
-
-#include "kernels/hypoplastic_rates.h"
+#include "kernels/hypoplastic_clay_rates.h"
 
 #include <string.h>
 
@@ -37,69 +35,17 @@ void pw_clay_derive(const pw_real *v, pw_clay *c)
   c->limits.p_min = v[PW_CLAY_P_MIN];
   c->limits.x_limit = (9.0 - sin_l * sin_l) / (1.0 - sin_l * sin_l);
   c->limits.tolerance = c->tolerance;
-}
-
-/** L:x. */
-PW_INLINE pw_t6 linear(const pw_clay *c, pw_t6 s, pw_t6 x)
-{
-  return pw_t6_axpy(pw_t6_scale(3.0 * c->c1, x), 3.0 * c->c2a * pw_t6_dot(s, x), s);
-}
-
-/** The scalar factors and N at a state given by its stress and ln(1 + e). */
-typedef struct factors {
-  pw_hypo_shape g;
-  pw_t6 n; /* f_s f_d N; Pa */
-  pw_real f_s, f_d, y;
-} factors;
-
-PW_INLINE factors factors_of(const pw_clay *c, pw_t6 stress, pw_real log_specific)
-{
-  factors k = {.g = pw_hypo_shape_of(stress)};
-  const pw_real pressure = -k.g.trace * (1.0 / 3.0), ss = k.g.np + 1.0 / 3.0;
-  const pw_real i3 = 1.0 / 27.0 - k.g.np * (1.0 / 6.0) + k.g.j3;
-  const pw_real ratio = pw_max(k.g.f, 1e-6) * c->inv_a;
-  k.f_s = c->stiff * pressure;
-  /* ln(2 p/p_e) */
-  pw_real log_state =
-      pw_log(pressure * (2.0 / PW_CLAY_P_R)) + (log_specific - c->n) * c->inv_lambda;
-  k.f_d = pw_exp(c->alpha * log_state);
-  k.y = c->y_slope * (0.5 * (ss - 1.0) / i3 + 9.0) + c->y;
-  pw_real on_s = 2.0 - (2.0 * ss - 1.0 / 3.0) / (ratio * ratio + ss); /* -m F/a = on_s s - 1/3 */
-  pw_t6 m = pw_t6_shift(pw_t6_scale(on_s, k.g.s), -1.0 / 3.0);
-  pw_real size = pw_min(k.f_d * k.y, PW_CLAY_N_MAX);
-  k.n = pw_t6_scale(k.f_s * size / pw_t6_norm(m), linear(c, k.g.s, m));
-  return k;
-}
-
-/** Rates of stress and intergranular strain for the strain rate @p d of norm @p size. */
-PW_INLINE pw_clay_rates rates_of(const pw_clay *c, const factors *k, pw_t6 delta, pw_t6 d,
-                                 pw_real size)
-{
-  pw_clay_rates out = {.n = k->n, .f_s = k->f_s, .f_d = k->f_d, .y = k->y};
-  pw_t6 x = d;
-  pw_real n_part = size;
-  if (c->intergranular) {
-    pw_real dd = pw_max(pw_t6_dot(delta, delta), 1e-200), log_rho = 0.5 * pw_log(dd * c->inv_r2);
-    pw_t6 dir = pw_t6_scale(1.0 / sqrt(dd), delta);
-    pw_real turn = pw_t6_dot(dir, d), chi = pw_exp(c->chi * log_rho);
-    pw_real loading = turn > 0.0 ? turn : 0.0;
-    pw_real along_dir = chi * (turn > 0.0 ? 1.0 - c->m_t : c->m_r - c->m_t) * turn;
-    x = pw_t6_axpy(pw_t6_scale(c->m_r + chi * (c->m_t - c->m_r), d), along_dir, dir);
-    n_part = chi * loading;
-    out.delta = pw_t6_axpy(d, -pw_exp(c->beta_r * log_rho) * loading, dir);
-  }
-  out.stress = pw_t6_axpy(pw_t6_scale(k->f_s, linear(c, k->g.s, x)), n_part, k->n);
-  return out;
+  c->limits.intergranular = c->intergranular;
+  c->limits.r = c->r;
+  c->limits.inv_r2 = c->inv_r2;
+  c->limits.max_substeps = c->max_substeps;
 }
 
 pw_clay_rates pw_clay_evaluate(const pw_clay *c, const pw_hypo_point *p, pw_t6 d)
 {
-  factors k = factors_of(c, p->stress, log1p(p->void_ratio));
-  pw_clay_rates out = rates_of(c, &k, p->delta, d, pw_t6_norm(d));
-  /* as the sand's: M exceeds m_R L by a few per cent at most where the rates turn */
-  pw_real s_max = 1.0 / 3.0 + pw_t6_largest_bound(0.5 * k.g.np, k.g.j3);
-  out.modulus = 3.0 * k.f_s * (c->c1 + c->c2a * s_max * s_max);
-  out.modulus = c->intergranular ? 1.1 * c->m_r * out.modulus : out.modulus + pw_t6_norm(k.n);
+  pw_clay_factors k = pw_clay_factors_of(c, p->stress, log1p(p->void_ratio));
+  pw_clay_rates out = pw_clay_rates_of(c, &k, p->delta, d, pw_t6_norm(d), c->intergranular);
+  out.modulus = pw_clay_modulus(c, &k, c->intergranular);
   return out;
 }
 
@@ -134,8 +80,8 @@ static pw_clay_rates stage(run *r, pw_hypo_point *at, pw_real t)
   if (!pw_hypo_inside(&r->c->limits, at->stress)) {
     at->stress = pw_hypo_limit(&r->c->limits, at->stress);
   }
-  factors k = factors_of(r->c, at->stress, r->log_specific + t * r->log_dvol);
-  return rates_of(r->c, &k, at->delta, r->de, r->size);
+  pw_clay_factors k = pw_clay_factors_of(r->c, at->stress, r->log_specific + t * r->log_dvol);
+  return pw_clay_rates_of(r->c, &k, at->delta, r->de, r->size, r->c->intergranular);
 }
 
 static pw_t6 clip(const pw_clay *c, pw_t6 delta)
@@ -319,7 +265,7 @@ static void linear_stiffness(const pw_clay *c, const pw_hypo_point *start, pw_re
     pw_real unit[6] = {0}, rows[6];
     unit[j] = j < 3 ? 1.0 : 0.5;
     pw_t6 s = pw_t6_scale(1.0 / pw_t6_trace(p.stress), p.stress);
-    pw_t6_store(pw_t6_scale(f, linear(c, s, pw_t6_load(unit, 1))), rows, 1);
+    pw_t6_store(pw_t6_scale(f, pw_clay_linear(c, s, pw_t6_load(unit, 1))), rows, 1);
     for (int i = 0; i < 6; i++) {
       tangent[6 * i + j] = rows[i];
     }

@@ -58,12 +58,14 @@ enum {
 
 /** What follows from a parameter set alone. */
 typedef struct pw_clay {
+  pw_hypo limits; /**< what integrations share with the sand: least pressure, limiting stress ratio,
+                       tolerance, substeps, R; the first member, so that a pointer to it is one to
+                       the whole */
   pw_real inv_lambda, n, inv_a, y, alpha, y_slope; /**< y_slope: of Y over (I1 I2 + 9 I3)/I3 */
   pw_real c1, c2a, stiff;                          /**< c2a: c2 a^2; stiff: f_s/p */
   pw_real m_r, m_t, r, inv_r2, beta_r, chi, tolerance;
   bool intergranular;
   int max_substeps;
-  pw_hypo limits; /**< least pressure and limiting stress ratio, as of the sand */
 } pw_clay;
 
 /** Rates of one state. */
@@ -87,6 +89,11 @@ pw_status pw_clay_integrate(const pw_clay *c, pw_t6 de, pw_real dvol, pw_hypo_po
 /** @brief The same with the substeps of @p path and no error control. */
 pw_status pw_clay_repeat(const pw_clay *c, pw_t6 de, pw_real dvol, pw_hypo_point *p,
                          const pw_hypo_path *path);
+
+/** @brief Advance the points of a batch that one substep or a few do for, several at once in vector
+ *  registers; as pw_hypo_advance_smooth() and pw_hypo_advance_rest() do for sand.
+ *  @param[out] done [a->n] 1 for a point advanced, 0 for one left as it was */
+void pw_clay_advance(const pw_clay *c, bool plane, const pw_stress_args *a, pw_real *done);
 
 /** @brief d stress(end)/d strain increment by central differences on the substeps of @p path; for
  *  no increment the linear part at the start. @param[out] tangent as of pw_hypo_tangent(). */

@@ -105,8 +105,22 @@ PW_INLINE void pw_hypo_combine(const pw_hypo *hp, const pw_hypo_substep *substep
   }
 }
 
-/** Rates of the lanes of one stage; instances of pw_hypo_stage_lanes(). */
+/** Rates of the lanes of one stage; instances of pw_hypo_stage_lanes(), or those of another model
+ *  whose constants begin with a pw_hypo. */
 typedef void (*pw_hypo_stage_fn)(const pw_hypo *h, const pw_hypo_stage *stage);
+
+/** Lanes of the two passes over a batch. Many points need one substep: a multiple of any vector
+ *  length, few enough to stay in cache. Few of them need more. */
+enum { PW_HYPO_LANES = 16, PW_HYPO_REST_LANES = 4 };
+
+/** @brief pw_hypo_advance_smooth() with the rates of a model.
+ *  @param[in] rates of a stage that is not the last, and of the last; PW_HYPO_LANES lanes */
+void pw_hypo_smooth_with(const pw_hypo *h, const pw_hypo_stage_fn rates[2], bool plane,
+                         const pw_stress_args *a, pw_real *done);
+
+/** @brief pw_hypo_advance_rest() likewise; PW_HYPO_REST_LANES lanes. */
+void pw_hypo_rest_with(const pw_hypo *h, const pw_hypo_stage_fn rates[2], bool plane,
+                       const pw_stress_args *a, pw_real *done);
 
 /**
  * Define the table `name`[form][last] of the instances for @p n lanes, one for each pair of

@@ -3,8 +3,7 @@
 
 #include "kernels/hypoplastic_lanes.h"
 
-/** Few lanes: few points of a batch need more than one substep. */
-enum { LANES = 4 };
+enum { LANES = PW_HYPO_REST_LANES };
 
 typedef pw_real lane_tensor[6][LANES];
 
@@ -196,6 +195,12 @@ static void release(const pw_hypo *h, const pw_stress_args *a, pool *g, pw_real 
 
 void pw_hypo_advance_rest(const pw_hypo *h, bool plane, const pw_stress_args *a, pw_real *done)
 {
+  pw_hypo_rest_with(h, stages[h->form], plane, a, done);
+}
+
+void pw_hypo_rest_with(const pw_hypo *h, const pw_hypo_stage_fn rates[2], bool plane,
+                       const pw_stress_args *a, pw_real *done)
+{
   pw_idx next = 0, left = 0;
   pool g;
   const pw_hypo_substep s = {g.stress[0],
@@ -220,7 +225,7 @@ void pw_hypo_advance_rest(const pw_hypo *h, bool plane, const pw_stress_args *a,
   empty(&g);
   while (refill(h, a, plane, done, &next, &g) > 0) {
     prepare(&g);
-    pw_hypo_substep_lanes(h, &s, LANES, stages[h->form]);
+    pw_hypo_substep_lanes(h, &s, LANES, rates);
     decide(h, &g);
     release(h, a, &g, done);
   }

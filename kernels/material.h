@@ -52,10 +52,15 @@ typedef struct pw_stress_args {
   pw_real *stress;            /**< [6][ld] Cauchy stress, in and out; Pa */
   pw_real *state;             /**< [nstate][ld] state variables, in and out; may be NULL if none */
   pw_real *wave_speed;        /**< [ldi] out: upper bound of the wave speed; m/s */
+  const pw_idx *id;           /**< [n] the number of each point, from 0, or NULL */
+  const pw_real *x;           /**< [dim][ldx] where the points are, or NULL; m */
+  pw_idx ldx;                 /**< leading dimension of x */
+  int dim;                    /**< coordinates of x: 2 or 3 */
   pw_real *tangent;           /**< [36][ldi] out, row-major d stress / d strain with ENGINEERING
                                shear columns, or NULL when not asked for; Pa. Models in rate form:
                                by the increment dstrain; models of F: by a further strain e of
                                F(n+1) <- (1 + e) F(n+1) in the same step */
+  bool of_f;                  /**< in: as of the material; out: as its tangent is */
   pw_material_counts *counts; /**< added to, or NULL */
   pw_idx bad;                 /**< out: first failing point of the batch, or -1 */
   const char *why;            /**< out, where a model can tell: why that point failed; its text
@@ -80,6 +85,10 @@ typedef struct pw_material {
   bool needs_left_cg;         /**< stress follows from F, not from increments */
   bool needs_def_grad;        /**< wants F beside the increments where there is one */
   bool needs_library;         /**< a shared library must be loaded first (engine/umat.h) */
+  bool of_f;                  /**< takes b, or F of the increment where there is one; its tangent is
+                                   by F */
+  bool symmetric;             /**< the tangent by F makes a symmetric stiffness matrix: no friction
+                               with other flow, no rate form */
   bool takes_initial_stress;  /**< may start from a prescribed stress */
   /** @brief Cross-parameter rules. @return PW_OK or PW_ERR_SCENE with the broken rule. */
   pw_status (*check)(const pw_real *param);

@@ -354,6 +354,8 @@ const pw_material pw_material_hencky_von_mises = {
              "and stiffness that may grow with depth",
     .keys = keys,
     .states = states,
+    .of_f = true,
+    .symmetric = true,
     .takes_initial_stress = true,
     .check = check,
     .nstate = nstate,

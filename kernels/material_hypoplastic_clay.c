@@ -36,7 +36,9 @@ static const pw_key keys[] = {
      "zero|isotropic|oedometric", NULL, "intergranular strain at the start; oedometric is along y"},
     REAL("substep_tolerance", PW_CLAY_TOLERANCE, 1e-12, 0.1, "1e-3",
          "relative error of stress and of intergranular strain over R in a substep"),
-    REAL("pressure_min_pa", PW_CLAY_P_MIN, 1e-6, PW_HUGE, "1000", "least mean pressure"),
+    REAL("pressure_min_pa", PW_CLAY_P_MIN, 1e-6, PW_HUGE, "100",
+         "least mean pressure. Soil that has come apart presses with it: keep it well below weight "
+         "times the size of a point, or a free surface takes off"),
     REAL("stress_ratio_limit_deg", PW_CLAY_PHI_LIMIT, 1.0, 89.0, "60",
          "largest Matsuoka-Nakai friction angle"),
     REAL("max_substeps", PW_CLAY_MAX_SUBSTEPS, 10.0, PW_HYPO_SUBSTEP_LIMIT, "400",
@@ -174,15 +176,32 @@ static pw_status update_point(const pw_clay *c, const pw_stress_args *a, size_t 
   return s;
 }
 
+/** Advance @p a->n <= PW_CHUNK points; the first failing one, or -1. */
+static pw_idx update_chunk(const pw_clay *c, const pw_stress_args *a)
+{
+  pw_real done[PW_CHUNK] = {0};
+  pw_idx bad = -1;
+  if (!a->tangent) {
+    pw_clay_advance(c, pw_spin_is_plane(a->spin, (size_t)a->ldi, a->n), a, done);
+  }
+  for (pw_idx i = 0; i < a->n; i++) {
+    if (!(done[i] > 0.0) && update_point(c, a, (size_t)i) != PW_OK && bad < 0) {
+      bad = i;
+    }
+  }
+  return bad;
+}
+
 static pw_status update(const pw_real *param, pw_stress_args *a)
 {
   pw_clay c;
   pw_clay_derive(param, &c);
   a->bad = -1;
-  for (pw_idx i = 0; i < a->n; i++) {
-    if (update_point(&c, a, (size_t)i) != PW_OK && a->bad < 0) {
-      a->bad = i;
-    }
+  for (pw_idx first = 0; first < a->n; first += PW_CHUNK) {
+    const pw_idx n = a->n - first < PW_CHUNK ? a->n - first : PW_CHUNK;
+    const pw_stress_args part = pw_rate_part(a, first, n);
+    const pw_idx bad = update_chunk(&c, &part);
+    a->bad = a->bad < 0 && bad >= 0 ? first + bad : a->bad;
   }
   return a->bad < 0 ? PW_OK : PW_RETRY_STRESS;
 }

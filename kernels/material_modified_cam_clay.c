@@ -9,6 +9,7 @@
  * n p, and one equation is left: n (plastic volume strain) = n multiplier (2 p - pc). It changes
  * sign between n = M and the other end of the wet (n < M) or dry side of the ellipse, where a
  * bracketed Newton iteration finds its only root. */
+#include "kernels/modified_cam_clay.h"
 #include "kernels/rate_form.h"
 
 enum { LAMBDA, KAPPA, SLOPE, POISSON, VOID_RATIO, PRECONSOLIDATION, OCR, DENSITY, P_MIN };
@@ -31,7 +32,8 @@ static const pw_key keys[] = {
     REAL("overconsolidation_ratio", OCR, 0, 1e6, "0",
          "pc over that of the ellipse through the initial stress; 1 is normally consolidated"),
     REAL("density_kg_m3", DENSITY, PW_TINY, PW_HUGE, NULL, "density at the start"),
-    REAL("pressure_min_pa", P_MIN, 1e-6, PW_HUGE, "100", "least mean pressure"),
+    REAL("pressure_min_pa", P_MIN, 1e-6, PW_HUGE, "100",
+         "least mean pressure; keep it well below weight times the size of a point"),
     {NULL, PW_KEY_REAL, 0, 0, 0, NULL, NULL, NULL, NULL},
 };
 
@@ -88,75 +90,251 @@ static void init(const pw_real *v, pw_idx n, pw_idx ld, const pw_real *stress, p
   }
 }
 
-/** A step of one point; compression positive. */
-typedef struct step {
-  pw_real lambda, soft, slope;     /* lambda, lambda - kappa, M */
-  pw_real stiff;                   /* M^2/(6 G) */
-  pw_real now;                     /* v at the end, or 0: p is held at its least value */
-  pw_real mean_volume, mean_slope; /* v that times the volume strain gives v - v_n; its slope */
-  pw_real base;                    /* lambda ln p of an isotropic virgin state with this v */
-  pw_real log_pc0;
-  pw_real q_trial;
-} step;
+/** What the points of a batch share. */
+typedef struct model {
+  pw_real lambda, kappa, slope, ratio, p_min, log_min; /* ratio: G/K */
+  pw_real wave;                                        /* (K + 4/3 G)/K */
+} model;
 
-/** The equation at n = q/p, and what belongs to n. */
-typedef struct residual {
-  pw_real n, p, pc, plastic; /* plastic: volume strain */
-  pw_real log_p_n;           /* d ln p/d n */
-  pw_real value, slope;
-} residual;
-
-static residual evaluate(const step *t, pw_real n)
+static model derive(const pw_real *v)
 {
-  const pw_real r2 = n * n / (t->slope * t->slope), size = pw_log(1.0 + r2);
-  const pw_real size_n = 2.0 * n / (t->slope * t->slope + n * n);
-  residual r = {.n = n, .log_p_n = -t->soft / t->lambda * size_n};
-  pw_real log_p = (t->base - t->soft * size) / t->lambda;
-  r.p = pw_exp(log_p);
-  r.pc = r.p * (1.0 + r2);
-  r.plastic = t->soft * (log_p + size - t->log_pc0) / t->mean_volume;
-  pw_real plastic_n = t->soft * (r.log_p_n + size_n) / t->mean_volume;
-  pw_real rest = t->q_trial - n * r.p; /* 3 G times the plastic shear strain */
-  r.value = n * r.plastic - t->stiff * rest * (1.0 - r2);
-  pw_real rest_n = -r.p * (1.0 + n * r.log_p_n);
-  pw_real way_n = -2.0 * n / (t->slope * t->slope);
-  r.slope = r.plastic + n * plastic_n - t->stiff * (rest_n * (1.0 - r2) + rest * way_n);
-  return r;
+  const pw_real ratio = 1.5 * (1.0 - 2.0 * v[POISSON]) / (1.0 + v[POISSON]);
+  return (model){.lambda = v[LAMBDA],
+                 .kappa = v[KAPPA],
+                 .slope = v[SLOPE],
+                 .ratio = ratio,
+                 .p_min = v[P_MIN],
+                 .log_min = pw_log(v[P_MIN]),
+                 .wave = 1.0 + 4.0 / 3.0 * ratio};
 }
 
-/** Root between two values of n, @p low of negative and @p high of positive residual, from @p x. */
-static residual find_root(const step *t, pw_real low, pw_real high, pw_real x)
+/** The elastic trial of a step. */
+typedef struct trial {
+  pw_t6 dev;                        /* of the trial stress */
+  pw_real x, volume, change, shear; /* tr(dE), v before the step, its change, G */
+  pw_real p, log_p, log_pc0, pc, q_trial;
+  pw_real cut, plastic; /* 1: p is held at its least value; beyond yield */
+} trial;
+
+PW_INLINE trial try_elastic(const model *m, pw_t6 turned, pw_t6 de, pw_real void_ratio, pw_real pc)
 {
-  x = (x - low) * (x - high) < 0.0 ? x : 0.5 * (low + high);
-  residual r = evaluate(t, x);
-  for (int i = 0; i < 200; i++) {
-    if (r.value < 0.0) {
-      low = x;
-    } else {
-      high = x;
-    }
-    pw_real next = x - r.value / r.slope;
-    next = (next - low) * (next - high) <= 0.0 ? next : 0.5 * (low + high);
-    pw_real moved = fabs(next - x);
-    x = next;
-    r = evaluate(t, x);
-    if (moved <= 1e-14 * fabs(x)) {
-      break;
+  const pw_real mean = -pw_t6_trace(turned) / 3.0, start = pw_max(mean, m->p_min);
+  trial t = {.x = pw_t6_trace(de), .volume = 1.0 + void_ratio, .pc = pc};
+  t.change = t.volume * pw_exp_less_one(t.x);
+  t.shear = m->ratio * t.volume * start / m->kappa;
+  pw_real log_p = pw_log(start) - t.change / m->kappa;
+  log_p = log_p < 690.0 ? log_p : 690.0;
+  const pw_real keeps = log_p >= m->log_min ? 1.0 : 0.0; /* NaN does not */
+  t.cut = 1.0 - keeps;
+  t.log_p = keeps > 0.0 ? log_p : m->log_min;
+  t.p = pw_exp(t.log_p);
+  t.log_pc0 = pw_log(pc);
+  t.dev = pw_t6_axpy(pw_t6_shift(turned, mean), 2.0 * t.shear, pw_t6_shift(de, -t.x / 3.0));
+  const pw_real q2 = 1.5 * pw_t6_dot(t.dev, t.dev), q = sqrt(q2);
+  const pw_real least = 1e-12 * t.p; /* isotropic states keep their derivative */
+  t.q_trial = q > least ? q : least;
+  t.plastic = q2 / (m->slope * m->slope) + t.p * (t.p - pc) > 0.0 ? 1.0 : 0.0;
+  return t;
+}
+
+/** The equation of a plastic step. */
+PW_INLINE pw_mcc_step step_of(const model *m, const trial *t)
+{
+  const pw_real small = t->volume * (1.0 + 0.5 * t->x), soft = m->lambda - m->kappa;
+  return (pw_mcc_step){.lambda = m->lambda,
+                       .soft = soft,
+                       .slope = m->slope,
+                       .stiff = m->slope * m->slope / (6.0 * t->shear),
+                       .mean_volume = fabs(t->x) > 1e-9 ? t->change / t->x : small,
+                       .base = m->kappa * t->log_p + soft * t->log_pc0,
+                       .log_pc0 = t->log_pc0,
+                       .q_trial = t->q_trial};
+}
+
+enum { SEEKS = 200, LANES = 16 };
+
+/** Plastic steps whose equations are solved together, each on its own. */
+typedef struct lanes {
+  pw_real stiff[LANES], mean_volume[LANES], base[LANES], log_pc0[LANES], q_trial[LANES];
+  pw_real p[LANES], pc[LANES];
+  pw_real low[LANES], high[LANES], x[LANES], value[LANES], slope[LANES], busy[LANES];
+} lanes;
+
+PW_INLINE pw_mcc_step load_step(const model *m, const lanes *g, int i)
+{
+  return (pw_mcc_step){.lambda = m->lambda,
+                       .soft = m->lambda - m->kappa,
+                       .slope = m->slope,
+                       .stiff = g->stiff[i],
+                       .mean_volume = g->mean_volume[i],
+                       .base = g->base[i],
+                       .log_pc0 = g->log_pc0[i],
+                       .q_trial = g->q_trial[i]};
+}
+
+PW_INLINE void store_search(pw_mcc_search s, lanes *g, int i)
+{
+  g->low[i] = s.low;
+  g->high[i] = s.high;
+  g->x[i] = s.x;
+  g->value[i] = s.value;
+  g->slope[i] = s.slope;
+  g->busy[i] = s.busy;
+}
+
+/** q/p of all lanes into x. */
+static void solve_lanes(const model *shared, lanes *g)
+{
+  const model m = *shared;
+  pw_real busy = 1.0;
+#pragma omp simd
+  for (int i = 0; i < LANES; i++) {
+    const pw_mcc_step t = load_step(&m, g, i);
+    store_search(pw_mcc_begin(&t, g->p[i], g->pc[i]), g, i);
+  }
+  for (int k = 0; k < SEEKS && busy > 0.0; k++) {
+    busy = 0.0;
+#pragma omp simd reduction(+ : busy)
+    for (int i = 0; i < LANES; i++) {
+      const pw_mcc_step t = load_step(&m, g, i);
+      const pw_mcc_search s =
+          pw_mcc_seek(&t, (pw_mcc_search){g->low[i], g->high[i], g->x[i], g->value[i], g->slope[i],
+                                          g->busy[i]});
+      store_search(s, g, i);
+      busy += s.busy;
     }
   }
-  return r;
 }
 
-/**
- * Tangent of a plastic step by implicit differentiation: value(n; x, q_trial) = 0 where x is the
- * volume strain (tension positive); sigma = -p 1 + q/q_trial s_trial.
- */
-static void plastic_tangent(const step *t, const residual *r, pw_t6 dev, pw_real shear,
+/** The trials of a batch, and q/p at the end of its plastic steps. */
+typedef struct trials {
+  pw_real dev[6][PW_CHUNK], x[PW_CHUNK], volume[PW_CHUNK], change[PW_CHUNK], shear[PW_CHUNK];
+  pw_real p[PW_CHUNK], log_p[PW_CHUNK], log_pc0[PW_CHUNK], pc[PW_CHUNK], q_trial[PW_CHUNK];
+  pw_real cut[PW_CHUNK], plastic[PW_CHUNK], n[PW_CHUNK];
+} trials;
+
+PW_INLINE trial load_trial(const trials *b, size_t i)
+{
+  return (trial){.dev = pw_t6_load(&b->dev[0][i], PW_CHUNK),
+                 .x = b->x[i],
+                 .volume = b->volume[i],
+                 .change = b->change[i],
+                 .shear = b->shear[i],
+                 .p = b->p[i],
+                 .log_p = b->log_p[i],
+                 .log_pc0 = b->log_pc0[i],
+                 .pc = b->pc[i],
+                 .q_trial = b->q_trial[i],
+                 .cut = b->cut[i],
+                 .plastic = b->plastic[i]};
+}
+
+PW_INLINE void try_point(const model *m, const pw_stress_args *a, size_t i, bool plane, trials *b)
+{
+  const size_t l = (size_t)a->ld;
+  const trial t =
+      try_elastic(m, pw_rate_turned(a, i, plane), pw_t6_load(a->dstrain + i, (size_t)a->ldi),
+                  a->state[STATE_VOID * l + i], a->state[STATE_PC * l + i]);
+  pw_t6_store(t.dev, &b->dev[0][i], PW_CHUNK);
+  b->x[i] = t.x;
+  b->volume[i] = t.volume;
+  b->change[i] = t.change;
+  b->shear[i] = t.shear;
+  b->p[i] = t.p;
+  b->log_p[i] = t.log_p;
+  b->log_pc0[i] = t.log_pc0;
+  b->pc[i] = t.pc;
+  b->q_trial[i] = t.q_trial;
+  b->cut[i] = t.cut;
+  b->plastic[i] = t.plastic;
+  b->n[i] = m->slope;
+}
+
+static void try_points(const model *shared, const pw_stress_args *args, trials *b)
+{
+  const model m = *shared;
+  const pw_stress_args a = *args;
+  if (pw_spin_is_plane(a.spin, (size_t)a.ldi, a.n)) {
+#pragma omp simd
+    for (pw_idx i = 0; i < a.n; i++) {
+      try_point(&m, &a, (size_t)i, true, b);
+    }
+  } else {
+#pragma omp simd
+    for (pw_idx i = 0; i < a.n; i++) {
+      try_point(&m, &a, (size_t)i, false, b);
+    }
+  }
+}
+
+/** Solve for the plastic steps; lanes without one repeat the first of their group. */
+static void solve_plastic(const model *m, pw_idx n, trials *b)
+{
+  pw_idx list[PW_CHUNK], count = 0;
+  for (pw_idx i = 0; i < n; i++) {
+    if (b->plastic[i] > 0.0) {
+      list[count++] = i;
+    }
+  }
+  for (pw_idx first = 0; first < count; first += LANES) {
+    const int in_use = count - first < LANES ? (int)(count - first) : LANES;
+    lanes g;
+    for (int k = 0; k < LANES; k++) {
+      const size_t i = (size_t)list[first + (k < in_use ? k : 0)];
+      const trial t = load_trial(b, i);
+      const pw_mcc_step s = step_of(m, &t);
+      g.stiff[k] = s.stiff;
+      g.mean_volume[k] = s.mean_volume;
+      g.base[k] = s.base;
+      g.log_pc0[k] = s.log_pc0;
+      g.q_trial[k] = s.q_trial;
+      g.p[k] = t.p;
+      g.pc[k] = t.pc;
+    }
+    solve_lanes(m, &g);
+    for (int k = 0; k < in_use; k++) {
+      b->n[list[first + k]] = g.x[k];
+    }
+  }
+}
+
+/** Stress and state at the end of a step; 1 when they are finite, else 0: the point keeps its own. */
+PW_INLINE pw_real finish_point(const model *m, const trials *b, const pw_stress_args *a, size_t i)
+{
+  const size_t l = (size_t)a->ld;
+  const trial t = load_trial(b, i);
+  const pw_mcc_step s = step_of(m, &t);
+  const pw_mcc_residual r = pw_mcc_evaluate(&s, b->n[i]);
+  const bool flows = t.plastic > 0.0;
+  const pw_real p = flows ? r.p : t.p, pc = flows ? r.pc : t.pc;
+  const pw_real shrink = flows ? r.n * r.p / t.q_trial : 1.0;
+  const pw_t6 stress = pw_t6_shift(pw_t6_scale(shrink, t.dev), -p);
+  const pw_real sound = pc > 0.0 && pc < PW_HUGE ? 1.0 : 0.0,
+                good = pw_t6_is_finite(stress) * sound;
+  const pw_real before = -pw_t6_trace(pw_t6_load(a->stress + i, l)) / 3.0;
+  const pw_real least = before > m->p_min ? before : m->p_min;
+  const pw_real now = t.volume + t.change;
+  const pw_real stiff = good > 0.0 ? now * p : t.volume * least;
+  pw_t6_store(pw_t6_select(good, stress, pw_t6_load(a->stress + i, l)), a->stress + i, l);
+  a->wave_speed[i] = sqrt(m->wave * stiff / m->kappa / a->density[i]);
+  a->state[STATE_PC * l + i] = good > 0.0 ? pc : t.pc;
+  a->state[STATE_VOID * l + i] = good > 0.0 ? now - 1.0 : a->state[STATE_VOID * l + i];
+  return good;
+}
+
+/** Tangent of a plastic step by implicit differentiation: value(n; x, q_trial) = 0 where x is the
+ *  volume strain (tension positive); sigma = -p 1 + q/q_trial s_trial. */
+static void plastic_tangent(const pw_mcc_step *t, const pw_mcc_residual *r, const trial *e,
                             pw_real *matrix)
 {
-  const pw_real way = 1.0 - r->n * r->n / (t->slope * t->slope), log_p_x = -t->now / t->lambda;
+  const pw_real x = e->x, now = e->cut > 0.0 ? 0.0 : e->volume + e->change, shear = e->shear;
+  const pw_real way = 1.0 - r->n * r->n / (t->slope * t->slope), log_p_x = -now / t->lambda;
+  /* slope of the mean volume (exp(x) - 1)/x v */
+  const pw_real mean_slope = e->volume * (fabs(x) > 1e-3 ? (exp(x) * (x - 1.0) + 1.0) / (x * x)
+                                                         : 0.5 + x * (1.0 / 3.0 + 0.125 * x));
+  const pw_t6 dev = e->dev;
   const pw_real q = r->n * r->p, shrink = q / t->q_trial;
-  pw_real plastic_x = (t->soft * log_p_x - r->plastic * t->mean_slope) / t->mean_volume;
+  pw_real plastic_x = (t->soft * log_p_x - r->plastic * mean_slope) / t->mean_volume;
   pw_real value_x = r->n * plastic_x + t->stiff * way * q * log_p_x, value_q = -t->stiff * way;
   for (int col = 0; col < 6; col++) {
     pw_real unit[6] = {0}, rows[6];
@@ -176,90 +354,55 @@ static void plastic_tangent(const step *t, const residual *r, pw_t6 dev, pw_real
   }
 }
 
-/** What a point has at the end of its step. */
-typedef struct result {
-  pw_t6 stress;
-  pw_real p, pc;
-  bool cut;
-} result;
-
-/** Step of a point from the turned stress; @p matrix the tangent, or NULL. */
-static result advance(const pw_real *v, pw_t6 turned, pw_t6 de, const pw_real *state,
-                      pw_real *matrix)
+/** Tangent of a point whose step is solved. */
+static void tangent_of(const model *m, const trials *b, const pw_stress_args *a, size_t i)
 {
-  const pw_real volume = 1.0 + state[STATE_VOID], x = pw_t6_trace(de), change = volume * expm1(x);
-  const pw_real mean = -pw_t6_trace(turned) / 3.0, start = pw_max(mean, v[P_MIN]);
-  const pw_real kappa = v[KAPPA], ratio = 1.5 * (1.0 - 2.0 * v[POISSON]) / (1.0 + v[POISSON]);
-  const pw_real shear = ratio * volume * start / kappa, log_min = pw_log(v[P_MIN]);
-  pw_real log_p0 = pw_log(start), log_trial = pw_min(log_p0 - change / kappa, 690.0);
-  bool cut = !(log_trial >= log_min);
-  log_trial = cut ? log_min : log_trial;
-  pw_real p = pw_exp(log_trial), pc = state[STATE_PC], m2 = v[SLOPE] * v[SLOPE];
-  pw_t6 dev = pw_t6_axpy(pw_t6_shift(turned, mean), 2.0 * shear, pw_t6_shift(de, -x / 3.0));
-  pw_real q2 = 1.5 * pw_t6_dot(dev, dev), now = cut ? 0.0 : volume + change;
-  result r = {.stress = pw_t6_shift(dev, -p), .p = p, .pc = pc, .cut = cut};
-  if (!(q2 / m2 + p * (p - pc) > 0.0)) {
-    if (matrix) {
-      pw_elastic_matrix(p * now / kappa - 2.0 / 3.0 * shear, shear, matrix);
-    }
-    return r;
+  const trial t = load_trial(b, i);
+  pw_real matrix[36];
+  if (t.plastic > 0.0) {
+    const pw_mcc_step s = step_of(m, &t);
+    const pw_mcc_residual r = pw_mcc_evaluate(&s, b->n[i]);
+    plastic_tangent(&s, &r, &t, matrix);
+  } else {
+    const pw_real now = t.cut > 0.0 ? 0.0 : t.volume + t.change;
+    pw_elastic_matrix(t.p * now / m->kappa - 2.0 / 3.0 * t.shear, t.shear, matrix);
   }
-  step t = {.lambda = v[LAMBDA],
-            .soft = v[LAMBDA] - kappa,
-            .slope = v[SLOPE],
-            .stiff = m2 / (6.0 * shear),
-            .now = now,
-            .mean_volume = fabs(x) > 1e-9 ? change / x : volume * (1.0 + 0.5 * x),
-            .mean_slope = fabs(x) > 1e-3 ? volume * (exp(x) * (x - 1.0) + 1.0) / (x * x)
-                                         : volume * (0.5 + x * (1.0 / 3.0 + 0.125 * x)),
-            .log_pc0 = pw_log(pc),
-            .q_trial = pw_max(sqrt(q2), 1e-12 * p)}; /* isotropic states keep their derivative */
-  t.base = kappa * log_trial + t.soft * t.log_pc0;
-  bool dry = 2.0 * p < pc;
-  pw_real n = t.q_trial / p; /* near the root in small steps */
-  residual at = dry ? find_root(&t, v[SLOPE], v[SLOPE] * sqrt(pc / p - 1.0), n)
-                    : find_root(&t, 0.0, v[SLOPE], n);
-  if (matrix) {
-    plastic_tangent(&t, &at, dev, shear, matrix);
-  }
-  pw_t6 shape = pw_t6_scale(at.n * at.p / t.q_trial, dev);
-  return (result){.stress = pw_t6_shift(shape, -at.p), .p = at.p, .pc = at.pc, .cut = cut};
+  pw_rate_store_tangent(a, i, matrix);
 }
 
-static pw_real update_point(const pw_real *v, const pw_stress_args *a, size_t p)
+/** Advance @p args->n <= PW_CHUNK points; the first failing one, or -1. */
+static pw_idx update_chunk(const model *shared, const pw_stress_args *args)
 {
-  const size_t l = (size_t)a->ld, li = (size_t)a->ldi;
-  pw_real *void_ratio = a->state + STATE_VOID * l + p, *pc = a->state + STATE_PC * l + p;
-  pw_t6 de = pw_t6_load(a->dstrain + p, li);
-  pw_t6 turned = pw_rate_turned(a, p, pw_spin_is_plane(a->spin + p, li, 1));
-  pw_real state[2] = {*void_ratio, *pc}, matrix[36];
-  result r = advance(v, turned, de, state, a->tangent ? matrix : NULL);
-  pw_real good = pw_t6_is_finite(r.stress) > 0.0 && r.pc > 0.0 && isfinite(r.pc) ? 1.0 : 0.0;
-  pw_real volume = 1.0 + *void_ratio, now = volume * exp(pw_t6_trace(de));
-  r.p = good > 0.0 ? r.p : pw_max(-pw_t6_trace(turned) / 3.0, v[P_MIN]);
-  pw_real modulus = (good > 0.0 ? now : volume) * r.p / v[KAPPA];
-  modulus *= 1.0 + 2.0 * (1.0 - 2.0 * v[POISSON]) / (1.0 + v[POISSON]);
-  pw_rate_store(a, p, good > 0.0 ? r.stress : pw_t6_load(a->stress + p, l), modulus);
-  if (good > 0.0) {
-    *pc = r.pc;
-    *void_ratio = now - 1.0;
+  const model m = *shared;
+  const pw_stress_args a = *args;
+  trials b;
+  pw_real good[PW_CHUNK], count = 0.0, cut = 0.0;
+  try_points(&m, &a, &b);
+  solve_plastic(&m, a.n, &b);
+#pragma omp simd reduction(+ : count, cut)
+  for (pw_idx i = 0; i < a.n; i++) {
+    good[i] = finish_point(&m, &b, &a, (size_t)i);
+    count += good[i];
+    cut += b.cut[i];
   }
-  if (a->counts) {
-    a->counts->cut_off += r.cut;
+  for (pw_idx i = 0; a.tangent && i < a.n; i++) {
+    tangent_of(&m, &b, &a, (size_t)i);
   }
-  if (a->tangent) {
-    pw_rate_store_tangent(a, p, matrix);
+  if (a.counts) {
+    a.counts->cut_off += (pw_off)cut;
   }
-  return good;
+  return count == (pw_real)a.n ? -1 : pw_first_zero(good, a.n);
 }
 
 static pw_status update(const pw_real *v, pw_stress_args *a)
 {
+  const model m = derive(v);
   a->bad = -1;
-  for (pw_idx i = 0; i < a->n; i++) {
-    if (update_point(v, a, (size_t)i) == 0.0 && a->bad < 0) {
-      a->bad = i;
-    }
+  for (pw_idx first = 0; first < a->n; first += PW_CHUNK) {
+    const pw_idx n = a->n - first < PW_CHUNK ? a->n - first : PW_CHUNK;
+    const pw_stress_args part = pw_rate_part(a, first, n);
+    const pw_idx bad = update_chunk(&m, &part);
+    a->bad = a->bad < 0 && bad >= 0 ? first + bad : a->bad;
   }
   return a->bad < 0 ? PW_OK : PW_RETRY_STRESS;
 }

@@ -2,7 +2,8 @@
 /* A user's Abaqus UMAT as a material. The host's duties: stress and total strain are turned with
  * the step before the call (DROT, Hughes and Winget 1980); every call gets copies; what the host
  * does not know is not a number, so that it cannot enter a result unnoticed. A step that the
- * routine does not manage is repeated in halves from the saved state, down to 1/1024. */
+ * routine does not manage is repeated in halves from the saved state, down to 1/1024; its tangent is
+ * then that of the whole step, by differences. */
 #include "kernels/umat.h"
 
 #include <math.h>
@@ -47,6 +48,11 @@ static const pw_key keys[] = {
     {"unchanged_stress", PW_KEY_CHOICE, AT(PW_UMAT_UNCHANGED), 0, 1, "error", "error|accept", NULL,
      "when the stress stays as it is although DDSDDE asks for a change: taken as a lost increment, "
      "or as flow at constant stress"},
+    {"ddsdde_measure", PW_KEY_CHOICE, AT(PW_UMAT_MEASURE), 0, 1, "increment", "increment|kirchhoff",
+     NULL,
+     "what DDSDDE is the derivative of: STRESS by DSTRAN, or J STRESS over J by a further strain "
+     "of "
+     "DFGRD1, as of routines that take the deformation gradient"},
     {NULL, PW_KEY_REAL, 0, 0, 0, NULL, NULL, NULL, NULL},
 };
 
@@ -176,6 +182,7 @@ typedef struct model {
   const pw_real *param;
   int nstatv;
   bool host_turns;    /* the state's tensors are turned here */
+  bool of_f;          /* DDSDDE is by F, of the Kirchhoff stress */
   pw_umat_call blank; /* a call without the point's own numbers */
 } model;
 
@@ -186,6 +193,8 @@ typedef struct point {
   pw_real tangent[36];         /* DDSDDE of the last call */
   pw_real dstrain[6], spin[3]; /* of the whole step */
   pw_real grad[9], f[9];       /* increment of F less 1, F before the step; row-major */
+  pw_real x[3];                /* place */
+  int32_t number;              /* from 1 */
 } point;
 
 /** A part of a step: from a share of it on, so much of it. */
@@ -203,7 +212,8 @@ static void prepare(model *m, const pw_real *v, const pw_stress_args *a)
   *m = (model){.umat = pw_umat_find(pw_umat_text(v, PW_UMAT_FILE), pw_umat_text(v, PW_UMAT_SYMBOL)),
                .param = v,
                .nstatv = (int)v[PW_UMAT_NSTATV],
-               .host_turns = v[PW_UMAT_STRESS_LIKE] + v[PW_UMAT_STRAIN_LIKE] > 0.0};
+               .host_turns = v[PW_UMAT_STRESS_LIKE] + v[PW_UMAT_STRAIN_LIKE] > 0.0,
+               .of_f = v[PW_UMAT_MEASURE] > 0.5};
   memset(c->cmname, ' ', sizeof c->cmname);
   memcpy(c->cmname, name, strlen(name));
   c->ndi = c->nshr = 3;
@@ -215,9 +225,6 @@ static void prepare(model *m, const pw_real *v, const pw_stress_args *a)
   }
   for (int k = m->nstatv; k < PW_UMAT_STATEV + PW_UMAT_SPARE; k++) {
     c->statev[k] = (pw_real)NAN;
-  }
-  for (int k = 0; k < 3; k++) {
-    c->coords[k] = (pw_real)NAN;
   }
   c->celent = v[PW_UMAT_LENGTH] > 0.0 ? v[PW_UMAT_LENGTH] : (pw_real)NAN;
   c->noel = c->npt = c->layer = c->kspt = c->kstep[0] = 1;
@@ -284,6 +291,8 @@ static pw_umat_call arguments(const model *m, const pw_stress_args *a, const poi
   c.dtime = (a->dt > 0.0 ? a->dt : 1e-9) * t.share; /* routines divide by it */
   c.time[0] = c.time[1] = a->time + t.from * a->dt;
   c.pnewdt = 1.0;
+  c.noel = p->number;
+  memcpy(c.coords, p->x, sizeof c.coords);
   gradient_at(p, t.from, c.dfgrd0);
   gradient_at(p, t.from + t.share, c.dfgrd1);
   return c;
@@ -312,7 +321,7 @@ static const char *advance_part(const model *m, const pw_stress_args *a, point *
 }
 
 /** The whole step, in halves where the routine asks for them. */
-static const char *advance(const model *m, pw_stress_args *a, point *p)
+static const char *advance(const model *m, const pw_stress_args *a, point *p, int *pieces)
 {
   int done = 0, piece = WHOLE;
   pw_material_counts n = {0};
@@ -333,12 +342,45 @@ static const char *advance(const model *m, pw_stress_args *a, point *p)
       piece = done + 2 * piece <= WHOLE && done % (2 * piece) == 0 ? 2 * piece : piece;
     }
   }
+  *pieces = (int)n.substeps;
   if (a->counts) {
     a->counts->rhs += n.rhs;
     a->counts->rejected += n.rejected;
     a->counts->substeps += n.substeps;
   }
   return NULL;
+}
+
+/** Stress by strain of a step that ended at @p p in pieces: the last DDSDDE knows its piece alone. */
+static void differentiate(const model *m, const pw_stress_args *a, const point *start, point *p)
+{
+  const int at[6] = {0, 4, 8, 1, 2, 5}, back[6] = {0, 4, 8, 3, 6, 7};
+  pw_stress_args quiet = *a;
+  pw_real size = 1e-4, tangent[36];
+  int pieces;
+  quiet.counts = NULL;
+  for (int k = 0; k < 6; k++) {
+    size = pw_max(size, fabs(start->dstrain[k]));
+  }
+  for (int j = 0; j < 6; j++) {
+    const pw_real eta = 1e-6 * size, half = 0.5 * eta;
+    point moved = *start;
+    moved.dstrain[j] += eta;
+    for (int k = 0; m->of_f && k < 3; k++) { /* (1 + e) F */
+      moved.grad[at[j] - at[j] % 3 + k] +=
+          half * (start->grad[3 * (at[j] % 3) + k] + (at[j] % 3 == k ? 1.0 : 0.0));
+      moved.grad[back[j] - back[j] % 3 + k] +=
+          half * (start->grad[3 * (back[j] % 3) + k] + (back[j] % 3 == k ? 1.0 : 0.0));
+    }
+    if (advance(m, &quiet, &moved, &pieces)) {
+      return;
+    }
+    for (int i = 0; i < 6; i++) {
+      tangent[i + 6 * j] = (moved.stress[i] - p->stress[i]) / eta;
+      tangent[i + 6 * j] += m->of_f && j < 3 ? p->stress[i] : 0.0;
+    }
+  }
+  memcpy(p->tangent, tangent, sizeof tangent);
 }
 
 /** F before the step from F after it: (1 + grad)^-1 F, by Cramer's rule. */
@@ -385,6 +427,10 @@ static void load(const model *m, const pw_stress_args *a, size_t i, point *p)
   for (size_t k = 0; k < 9; k++) {
     p->grad[k] = a->increment ? a->increment[k * li + i] - (k % 4 == 0 ? 1.0 : 0.0) : rate[k];
   }
+  for (int k = 0; k < 3; k++) {
+    p->x[k] = !a->x ? (pw_real)NAN : k < a->dim ? a->x[(size_t)k * (size_t)a->ldx + i] : 0.0;
+  }
+  p->number = a->id ? (int32_t)a->id[i] + 1 : 1;
   undo_gradient(a, i, p);
 }
 
@@ -401,7 +447,9 @@ static void store(const model *m, const pw_stress_args *a, size_t i, const point
   }
   for (size_t row = 0; a->tangent && row < 6; row++) {
     for (size_t col = 0; col < 6; col++) {
-      a->tangent[(6 * row + col) * li + i] = p->tangent[order[row] + 6 * order[col]];
+      /* d sigma = d tau / J - sigma tr(e) */
+      pw_real less = m->of_f && col < 3 ? p->stress[order[row]] : 0.0;
+      a->tangent[(6 * row + col) * li + i] = p->tangent[order[row] + 6 * order[col]] - less;
     }
   }
 }
@@ -411,15 +459,22 @@ static pw_status update(const pw_real *v, pw_stress_args *a)
   model m;
   prepare(&m, v, a);
   a->bad = -1;
+  a->of_f = m.of_f;
   const bool alone = m.umat && v[PW_UMAT_THREAD_SAFE] < 0.5;
   if (alone) {
     m.umat->enter();
   }
   for (pw_idx i = 0; i < a->n; i++) {
     point p;
+    int pieces = 1;
     load(&m, a, (size_t)i, &p);
-    const char *why = m.umat ? advance(&m, a, &p) : "the library of the UMAT is not loaded";
+    const point start = p;
+    const char *why =
+        m.umat ? advance(&m, a, &p, &pieces) : "the library of the UMAT is not loaded";
     if (!why) {
+      if (a->tangent && pieces > 1) {
+        differentiate(&m, a, &start, &p);
+      }
       store(&m, a, (size_t)i, &p);
     } else if (a->bad < 0) {
       a->bad = i;

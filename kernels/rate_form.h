@@ -60,6 +60,22 @@ static inline void pw_elastic_matrix(pw_real lambda, pw_real shear, pw_real *mat
   }
 }
 
+/** @brief The arguments of @p n points of a batch from @p first on, for models in rate form. */
+static inline pw_stress_args pw_rate_part(const pw_stress_args *a, pw_idx first, pw_idx n)
+{
+  pw_stress_args part = *a;
+  part.n = n;
+  part.dstrain += first;
+  part.spin += first;
+  part.dvol += first;
+  part.density += first;
+  part.stress += first;
+  part.state = a->state ? a->state + first : NULL;
+  part.wave_speed += first;
+  part.tangent = a->tangent ? a->tangent + first : NULL;
+  return part;
+}
+
 /** @brief True when neither spin nor stress nor strain of @p n points leaves the plane. */
 static inline bool pw_rate_is_plane(const pw_stress_args *a, pw_idx first, pw_idx n)
 {

@@ -29,6 +29,9 @@ pw_real pw_umat_stiffness(const pw_real *ddsdde)
   return pw_max(0.5 * norm, normal + norm);
 }
 
+/* Smaller strains may vanish in the rounding of a deformation gradient. */
+static const pw_real visible = 1e-14;
+
 /** Whether the stress stayed as it was although the stiffness asks for a change. */
 static bool is_lost(const pw_real *param, const pw_umat_call *sent, const pw_umat_call *c)
 {
@@ -44,7 +47,7 @@ static bool is_lost(const pw_real *param, const pw_umat_call *sent, const pw_uma
   }
   change = change > 0.0 || !(pw_umat_stiffness(c->ddsdde) == 0.0) ? change
                                                                   : param[PW_UMAT_BOUND] * strain;
-  return param[PW_UMAT_UNCHANGED] < 0.5 && change > 1e-10 * size &&
+  return param[PW_UMAT_UNCHANGED] < 0.5 && change > 1e-10 * size && strain > visible &&
          memcmp(c->stress, sent->stress, sizeof c->stress) == 0;
 }
 
@@ -71,7 +74,7 @@ const char *pw_umat_judge(const pw_real *param, const pw_umat_call *sent, const 
            "beyond nprops, COORDS and CELENT that were not given are none)";
   }
   if (c->pnewdt < 1.0) {
-    return "the UMAT asks for ever smaller steps (PNEWDT < 1)";
+    return "the UMAT asks for smaller steps (PNEWDT < 1)";
   }
   if (!all_finite(c->ddsdde, 36)) {
     return "the UMAT returned a DDSDDE that is not finite";

@@ -45,6 +45,32 @@ expect_same one/history.csv locked/history.csv
 expect_exit 0 "$program" run scene_own.yaml $quiet --quiet --set time.dt_s=1.0e-3 --threads 1 --out own_scene
 same_figures one/history.csv own_scene/history.csv 1e-8 kinetic_j strain_work_j block_x_m block_y_m
 
+# Implicit steps: the routine in logarithmic strain against hencky_von_mises, that in rate form
+# against drucker_prager without friction, each on 1 and 2 threads.
+implicit() {
+  expect_exit 0 "$program" run "$1.yaml" $quiet --quiet --threads "$2" --out "$3"
+}
+figures="boundary_1_force_x_n boundary_1_force_y_n stress_record_0_mean_pa stress_record_0_least_pa
+  stress_record_1_mean_pa stress_record_1_largest_pa"
+sed '/library:/,/thread_safe:/d; s/model: umat/model: hencky_von_mises\n    youngs_modulus_pa: 1.0e7\
+    poisson_ratio: 0.3\n    density_kg_m3: 1800\n    yield_uniaxial_pa: 5.0e4\
+    hardening_modulus_pa: 5.0e5/' implicit.yaml >implicit_own.yaml
+sed '/symbol:/d; /ddsdde_measure:/d; s/nstatv: 7/nstatv: 1/; s/, 5.0e5\]/, 0]/' implicit.yaml >rate.yaml
+sed '/library:/,/thread_safe:/d; s/model: umat/model: drucker_prager\n    youngs_modulus_pa: 1.0e7\
+    poisson_ratio: 0.3\n    density_kg_m3: 1800\n    friction_angle_deg: 0\
+    cohesion_pa: 2.5e4/' implicit.yaml >rate_own.yaml
+for run in "implicit implicit_own" "rate rate_own"; do
+  set -- $run
+  implicit "$1" 1 "$1"
+  implicit "$1" 2 "$1"_two
+  implicit "$2" 1 "$2"
+  expect_same "$1"/history.csv "$1"_two/history.csv
+  same_figures "$1"/history.csv "$2"/history.csv 1e-10 $figures
+done
+sed 's/nstatv: 7/nstatv: 6/' implicit.yaml >stop_implicit.yaml
+expect_exit 3 "$program" run stop_implicit.yaml $quiet --out stop_implicit
+expect_text stderr 'in element [0-9]*: the UMAT ended with STOP: umat_hencky needs 4 constants'
+
 # A run that is stopped and resumed from another folder finds the library and goes on.
 expect_exit 0 "$program" run scene.yaml $quiet --quiet --threads 1 --out half --set time.dt_s=1.0e-3 \
   --set output.checkpoint_every_s=0.05 --set time.end_s=0.1

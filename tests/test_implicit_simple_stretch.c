@@ -130,6 +130,10 @@ static void cut_steps_recover(void **state)
   c.yield = "yield_radius_pa";
   c.fbar = PW_FBAR_TOTAL;
   stretch_start(&c, &s);
+  pw_newton_options options = pw_newton_defaults();
+  options.approach = 0;
+  pw_newton_destroy(&s.newton);
+  assert_ok(pw_newton_create(&s.model, &options, &s.newton));
   for (int k = 1; k <= 20; k++) {
     assert_ok(stretch_step(&s));
     assert_true(s.report.parts == 1 || s.report.cuts > 0);

@@ -63,17 +63,51 @@ static void apex(void **unused)
   }
 }
 
+/** Simple shear to 100 %: without dilation the mean stress stays, sqrt(J2) = (6 c cos(phi) + 6 p
+ *  sin(phi))/(sqrt(3) (3 - sin(phi))); the spin tilts the stress by the order of sqrt(J2)/G. */
+static void simple_shear(void **unused)
+{
+  (void)unused;
+  for (int k = 0; k < 2; k++) {
+    const double phi = k ? 30.0 : 0.0, c = 1e4, s = sin(phi * RADIANS);
+    test_material m = soil(phi, 0, c, "compression");
+    pw_element el = test_start(&m, 1e5);
+    const pw_real de[6] = {0, 0, 0, 5e-5, 0, 0}, spin[3] = {5e-5, 0, 0};
+    for (int i = 0; i < 10000; i++) {
+      assert_ok(pw_element_move(&el, de, spin, NULL));
+    }
+    double root = (6.0 * c * cos(phi * RADIANS) + 6e5 * s) / (sqrt(3.0) * (3.0 - s));
+    assert_near(el.stress[0] + el.stress[1] + el.stress[2], -3e5, 1e-6 * 1e5);
+    assert_relative(test_dev_norm(el.stress) / sqrt(2.0), root, 1e-10);
+    assert_relative(el.stress[3], root, 2e-4);
+  }
+}
+
+/** Without friction the strength in pure shear is 2 c/sqrt(3) when matched in compression; pressure
+ *  in a cavity as of Mohr-Coulomb with it: elastic part 4 G (e_y/2 - e_y^2/4 + e_y^3/18), then
+ *  -c_u ln(1 - e^(-c_u/G)). */
+static void cavity_pressure(void **unused)
+{
+  (void)unused;
+  const double c = 2e4, cu = 2.0 * c / sqrt(3.0), shear = 8e6, ey = 0.5 * cu / shear;
+  test_material m = soil(0, 0, c, "compression");
+  pw_element el = test_start(&m, 1e5);
+  double p = test_cavity_pressure(&el, 1e-3 * ey, 1.002);
+  double elastic = 4.0 * shear * (0.5 * ey - 0.25 * ey * ey + ey * ey * ey / 18.0);
+  assert_relative(p, elastic - cu * log(-expm1(-cu / shear)), 1e-3);
+}
+
 static void yield_and_dissipation(void **unused)
 {
   (void)unused;
   uint64_t seed = 23;
   double worst = -1.0, least = 0.0;
-  for (int path = 0; path < 1000; path++) {
+  for (int path = 0; path < 100000; path++) {
     double phi = path % 3 ? 40.0 * test_random(&seed) : 0.0, c = 1e3 + 3e4 * test_random(&seed);
     test_material m = soil(phi, phi * test_random(&seed), c, "compression");
     double s = sin(phi * RADIANS), f = sqrt(3.0) * (3.0 - s);
     pw_element el = test_start(&m, 1e5 * test_random(&seed));
-    for (int i = 0; i < 100; i++) {
+    for (int i = 0; i < 8; i++) {
       pw_real de[6];
       test_random_strain(&seed, pow(10.0, -5.0 + 4.0 * test_random(&seed)), de);
       pw_t6 before = pw_t6_load(el.stress, 1), strain = pw_t6_load(de, 1);
@@ -146,6 +180,8 @@ int main(void)
   const struct CMUnitTest tests[] = {cmocka_unit_test(triaxial_limits_match),
                                      cmocka_unit_test(plane_strain_limit_matches),
                                      cmocka_unit_test(apex),
+                                     cmocka_unit_test(simple_shear),
+                                     cmocka_unit_test(cavity_pressure),
                                      cmocka_unit_test(yield_and_dissipation),
                                      cmocka_unit_test(tangents_are_derivatives),
                                      cmocka_unit_test(rotation_keeps_the_invariants),

@@ -282,9 +282,9 @@ static void yield_and_dissipation(void **unused)
   const double cu = 2e4, hardening = 2e5;
   test_set(&m, "hardening_modulus_pa", hardening);
   double worst = 0.0;
-  for (int path = 0; path < 1000; path++) {
+  for (int path = 0; path < 100000; path++) {
     pw_element el = test_start(&m, 1e5 * test_random(&seed));
-    for (int i = 0; i < 100; i++) {
+    for (int i = 0; i < 8; i++) {
       pw_real de[6], spin[3];
       test_random_strain(&seed, pow(10.0, -5.0 + 4.0 * test_random(&seed)), de);
       for (int c = 0; c < 3; c++) {

@@ -180,7 +180,7 @@ static void tangent_is_the_derivative(void **unused)
     worst = fmax(worst, test_tangent_error(&el, de, 1e-8, 4.5 * 3.0 * 1e5 / kappa));
   }
   print_message("tangent against differences: %.2e of the largest stiffness\n", worst);
-  assert_true(worst < 1e-5);
+  assert_true(worst < 1e-6);
 }
 
 /** 10^5 random increments up to 1e-3: finite, at least the least pressure. */
@@ -198,7 +198,7 @@ static void survives_torture(void **unused)
     }
     test_random_strain(&seed, pow(10.0, -6.0 + 3.0 * test_random(&seed)), de);
     assert_ok(pw_element_move(&el, de, NULL, NULL));
-    assert_true(pressure(el.stress) >= 1000.0 * (1.0 - 1e-9) && isfinite(test_dev_norm(el.stress)));
+    assert_true(pressure(el.stress) >= 100.0 * (1.0 - 1e-9) && isfinite(test_dev_norm(el.stress)));
     assert_true(isfinite(el.wave_speed) && el.wave_speed > 0.0);
   }
   print_message("%.1f right-hand sides an increment\n", (double)el.counts.rhs / 200.0);
@@ -229,6 +229,51 @@ static void loose_soil_stays_soft(void **unused)
   assert_true(most <= 1.2);
 }
 
+/** Stiffness of plane waves, m.sigma_dot(m n).n for |m| = |n| = 1, against the bound, over stresses
+ *  up to the limiting ratio, overconsolidation, and intergranular strains of any direction. */
+static void wave_speed_is_an_upper_bound(void **unused)
+{
+  (void)unused;
+  uint64_t seed = 53;
+  for (int with = 0; with < 2; with++) {
+    double most = 0.0;
+    for (int i = 0; i < 20000; i++) {
+      test_material m = clay(1.0);
+      test_set(&m, "intergranular_strain", with);
+      test_set(&m, "stiffness_ratio_m_r", i % 2 ? 4.5 : 10.0);
+      test_set(&m, "stiffness_ratio_m_t", i % 3 ? 4.5 : 1.0);
+      pw_clay c;
+      pw_clay_derive(m.v, &c);
+      pw_real far[6], delta[6], d[3], n[3], size = 0.0, nn = 0.0;
+      test_random_strain(&seed, 4e5 * test_random(&seed), far);
+      pw_hypo_point at = {.stress = {-1e5, -1e5, -1e5, 0, 0, 0}};
+      at.stress = pw_hypo_limit(&c.limits, pw_t6_axpy(at.stress, 1.0, pw_t6_load(far, 1)));
+      const double p = -pw_t6_trace(at.stress) / 3.0,
+                   ocr = pow(10.0, 2.0 * test_random(&seed) - 0.3);
+      at.void_ratio = expm1(big_n - lambda * log(ocr * p / 1000.0));
+      test_random_strain(&seed, 1.0, delta);
+      at.delta = pw_t6_load(delta, 1);
+      at.delta = pw_t6_scale(c.r * test_random(&seed) / pw_t6_norm(at.delta), at.delta);
+      for (int k = 0; k < 3; k++) {
+        n[k] = test_random(&seed) - 0.5;
+        d[k] = i % 2 ? n[k] : test_random(&seed) - 0.5;
+        nn += n[k] * n[k];
+        size += d[k] * d[k];
+      }
+      const pw_t6 e = {d[0] * n[0],
+                       d[1] * n[1],
+                       d[2] * n[2],
+                       0.5 * (d[0] * n[1] + d[1] * n[0]),
+                       0.5 * (d[1] * n[2] + d[2] * n[1]),
+                       0.5 * (d[2] * n[0] + d[0] * n[2])};
+      const pw_clay_rates r = pw_clay_evaluate(&c, &at, e);
+      most = fmax(most, pw_t6_dot(e, r.stress) / (nn * size * r.modulus));
+    }
+    print_message("waves: at most %.3f of the modulus of the bound\n", most);
+    assert_true(most <= 1.0 && most > 0.6);
+  }
+}
+
 static void rotation_keeps_the_invariants(void **unused)
 {
   (void)unused;
@@ -247,6 +292,36 @@ static void place_does_not_matter(void **unused)
   test_set(&m, "intergranular_strain", 1.0);
   test_place_does_not_matter(&m, 1e5, 1e-4, true);
   test_place_does_not_matter(&m, 1e5, 1e-4, false);
+}
+
+/** Several points at once give what one by one gives (the update with a tangent is one by one). */
+static void lanes_follow_the_single_point(void **unused)
+{
+  (void)unused;
+  uint64_t seed = 59;
+  double worst = 0.0;
+  for (int trial = 0; trial < 4000; trial++) {
+    test_material m = clay(1.0 + 3.0 * test_random(&seed));
+    test_set(&m, "intergranular_strain", trial % 3 != 0);
+    test_set(&m, "initial_intergranular", trial % 2);
+    pw_element el = test_start(&m, 5e4 + 1e5 * test_random(&seed)), lanes, single;
+    const double size = pow(10.0, -7.0 + 3.5 * test_random(&seed));
+    for (int step = 0; step < 3; step++) {
+      pw_real de[6], tangent[36];
+      test_random_strain(&seed, size, de);
+      assert_ok(test_update(&el, de, NULL, &lanes, NULL));
+      assert_ok(test_update(&el, de, NULL, &single, tangent));
+      for (int c = 0; c < 6; c++) {
+        worst = fmax(worst, fabs(lanes.stress[c] - single.stress[c]) / pressure(el.stress));
+        worst =
+            fmax(worst, trial % 3 ? fabs(lanes.state[1 + c] - single.state[1 + c]) / 1e-4 : 0.0);
+      }
+      worst = fmax(worst, fabs(lanes.state[0] - single.state[0]));
+      el = lanes;
+    }
+  }
+  print_message("several points at once or one by one: %.1e apart\n", worst);
+  assert_true(worst < 1e-12);
 }
 
 static void bad_parameters_are_named(void **unused)
@@ -275,8 +350,10 @@ int main(void)
                                      cmocka_unit_test(tangent_is_the_derivative),
                                      cmocka_unit_test(survives_torture),
                                      cmocka_unit_test(loose_soil_stays_soft),
+                                     cmocka_unit_test(wave_speed_is_an_upper_bound),
                                      cmocka_unit_test(rotation_keeps_the_invariants),
                                      cmocka_unit_test(place_does_not_matter),
+                                     cmocka_unit_test(lanes_follow_the_single_point),
                                      cmocka_unit_test(bad_parameters_are_named)};
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

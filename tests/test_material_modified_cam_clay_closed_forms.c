@@ -88,6 +88,96 @@ static void undrained_path(void **unused)
   }
 }
 
+/** Undrained, normally consolidated, n = q/p = M tanh(y): p as above; shear strain by integrating
+ *  elastic and plastic parts over n at v = 1 + e0, G = r v p/kappa, L = 1 - kappa/lambda:
+ *    e_q = kappa/(3 r v) (n - 2 L (n - M atan(n/M))) + 2 kappa L/(v M) (y - atan(n/M)). */
+static double undrained_shear_strain(double y)
+{
+  const double v = 1.0 + e0, n = slope * tanh(y), share = 1.0 - kappa / lambda;
+  const double r = 1.5 * (1.0 - 2.0 * nu) / (1.0 + nu), angle = atan(n / slope);
+  return kappa / (3.0 * r * v) * (n - 2.0 * share * (n - slope * angle)) +
+         2.0 * kappa * share / (v * slope) * (y - angle);
+}
+
+static double undrained_q(double y)
+{
+  const double n = slope * tanh(y);
+  return n * 1e5 * pow(1.0 + n * n / (slope * slope), kappa / lambda - 1.0);
+}
+
+static void undrained_stress_strain(void **unused)
+{
+  (void)unused;
+  test_material m = clay(1.0);
+  pw_element el = test_start(&m, 1e5);
+  const pw_real push[6] = {1e-5, -2e-5, 1e-5, 0, 0, 0}; /* e_q = 2e-5 */
+  for (int i = 1; i <= 5000; i++) {
+    assert_ok(pw_element_move(&el, push, NULL, NULL));
+    double n = shear_stress(el.stress) / pressure(el.stress);
+    if (i > 50 && n < 0.999 * slope) {
+      assert_relative(undrained_shear_strain(atanh(n / slope)), 2e-5 * i, 2e-3);
+    }
+  }
+}
+
+/** A cavity opened from nothing in undrained clay: every shell is in pure shear e, so that
+ *  p = int 2 q/sqrt(3) de/(exp(2 e) - 1) with e_q = 2 e/sqrt(3) and the curve above. */
+static void cavity_pressure(void **unused)
+{
+  (void)unused;
+  test_material m = clay(1.0);
+  pw_element el = test_start(&m, 1e5);
+  double p = test_cavity_pressure(&el, 1e-6, 1.002), expected = 0.0;
+  double last = undrained_shear_strain(1e-6), y = 1e-6;
+  while (last < 20.0) {
+    double middle = y * 1.0005, next = y * 1.001, strain = undrained_shear_strain(next);
+    double e = 0.5 * sqrt(3.0) * undrained_shear_strain(middle);
+    expected += undrained_q(middle) * (strain - last) / expm1(2.0 * e);
+    y = next;
+    last = strain;
+  }
+  print_message("cavity: %.6g Pa, by quadrature of the closed form %.6g Pa\n", p, expected);
+  assert_relative(p, expected, 3e-3);
+}
+
+/** One-dimensional compression on the virgin line: n = q/p solves
+ *  (1 - kappa/lambda) 2 n/(M^2 - n^2) + kappa n/(3 r lambda) = 2/3. */
+static void compression_at_rest(void **unused)
+{
+  (void)unused;
+  test_material m = clay(1.0);
+  pw_element el = test_start(&m, 1e4);
+  const pw_real press[6] = {0, -5e-5, 0, 0, 0, 0};
+  for (int i = 0; i < 8000; i++) {
+    assert_ok(pw_element_move(&el, press, NULL, NULL));
+  }
+  double low = 0.0, high = slope, r = 1.5 * (1.0 - 2.0 * nu) / (1.0 + nu);
+  for (int i = 0; i < 60; i++) {
+    double n = 0.5 * (low + high);
+    double rest = (1.0 - kappa / lambda) * 2.0 * n / (slope * slope - n * n) +
+                  kappa * n / (3.0 * r * lambda) - 2.0 / 3.0;
+    *(rest < 0.0 ? &low : &high) = n;
+  }
+  assert_relative(shear_stress(el.stress) / pressure(el.stress), low, 1e-3);
+}
+
+/** Simple shear to 100 % with its spin: p and q of the critical state; the spin tilts the stress by
+ *  the order of q/G. */
+static void simple_shear(void **unused)
+{
+  (void)unused;
+  test_material m = clay(1.0);
+  pw_element el = test_start(&m, 1e5);
+  const pw_real de[6] = {0, 0, 0, 5e-5, 0, 0}, spin[3] = {5e-5, 0, 0};
+  for (int i = 0; i < 10000; i++) {
+    assert_ok(pw_element_move(&el, de, spin, NULL));
+  }
+  double p = 1e5 * pow(0.5, (lambda - kappa) / lambda);
+  assert_relative(pressure(el.stress), p, 1e-4);
+  assert_relative(shear_stress(el.stress), slope * p, 1e-4);
+  assert_relative(el.stress[3], slope * p / sqrt(3.0), 1e-3);
+}
+
 /** Drained triaxial compression ends at q = 3 (p - p0), q = M p; and v on the critical line. */
 static void drained_critical_state(void **unused)
 {
@@ -116,10 +206,10 @@ static void yield_and_dissipation(void **unused)
   (void)unused;
   uint64_t seed = 31;
   double worst = -1.0, least = 0.0;
-  for (int path = 0; path < 1000; path++) {
+  for (int path = 0; path < 100000; path++) {
     test_material m = clay(1.0 + 5.0 * test_random(&seed));
     pw_element el = test_start(&m, 1e4 + 3e5 * test_random(&seed));
-    for (int i = 0; i < 100; i++) {
+    for (int i = 0; i < 8; i++) {
       pw_real de[6];
       test_random_strain(&seed, pow(10.0, -6.0 + 3.7 * test_random(&seed)), de);
       pw_element old = el;
@@ -217,6 +307,10 @@ int main(void)
   const struct CMUnitTest tests[] = {cmocka_unit_test(compression_lines),
                                      cmocka_unit_test(undrained_strength),
                                      cmocka_unit_test(undrained_path),
+                                     cmocka_unit_test(undrained_stress_strain),
+                                     cmocka_unit_test(cavity_pressure),
+                                     cmocka_unit_test(compression_at_rest),
+                                     cmocka_unit_test(simple_shear),
                                      cmocka_unit_test(drained_critical_state),
                                      cmocka_unit_test(yield_and_dissipation),
                                      cmocka_unit_test(tangents_are_derivatives),

@@ -17,6 +17,7 @@ static const char *const dimensionless[] = {
     "points_per_cell",
     "rod_elements",
     "mass_cut_off",
+    "step_ratio_max",
     "block_elements",
     "poisson_ratio",
     "void_ratio",
@@ -61,6 +62,26 @@ static const char *const dimensionless[] = {
     "statev_initial",
     "statev_stress_tensors",
     "statev_strain_tensors",
+    "size_factor",
+    "bricks",
+    "tets_per_brick",
+    "steps",
+    "tolerance",
+    "max_iterations",
+    "max_cuts",
+    "approach",
+    "line_search",
+    "history_every_steps",
+    "snapshot_every_steps",
+    "checkpoint_every_steps",
+    "picture_steps",
+    "slice_part",
+    "start_step",
+    "ramp_steps",
+    "axis",
+    "stretch_end",
+    "beta",
+    "gamma",
 };
 
 typedef void (*table_fn)(const char *name, const pw_key *keys, void *context);
@@ -87,10 +108,23 @@ static void for_each_table(table_fn fn, void *context)
   }
 }
 
+static void for_each_solid_table(table_fn fn, void *context)
+{
+  fn("geometry solid, mesh:", pw_scene_keys_mesh, context);
+  fn("geometry solid, implicit:", pw_scene_keys_implicit, context);
+  fn("geometry solid, output:", pw_scene_keys_solid_output, context);
+  fn("geometry solid, bodies: NAME:", pw_scene_keys_solid_body, context);
+  for (int i = 0; pw_solid_effect_at(i); i++) {
+    char name[2 * PW_NAME];
+    snprintf(name, sizeof name, "geometry solid, %s:", pw_solid_effect_at(i)->name);
+    fn(name, pw_solid_effect_at(i)->keys, context);
+  }
+}
+
 static bool is_number(const pw_key *k)
 {
-  return k->type == PW_KEY_REAL || k->type == PW_KEY_PAIR || k->type == PW_KEY_REALS ||
-         k->type == PW_KEY_INT;
+  return k->type == PW_KEY_REAL || k->type == PW_KEY_PAIR || k->type == PW_KEY_TRIPLE ||
+         k->type == PW_KEY_REALS || k->type == PW_KEY_INT;
 }
 
 static void check_units(const char *name, const pw_key *keys, void *context)
@@ -116,6 +150,7 @@ static void numbers_carry_their_unit(void **state)
 {
   (void)state;
   for_each_table(check_units, NULL);
+  for_each_solid_table(check_units, NULL);
 }
 
 static void units_follow_the_suffix(void **state)
@@ -160,7 +195,10 @@ static void check_row(const char *table, const pw_key *keys, const pw_key *k)
     pw_scene_defaults(one, base);
     pw_reals list;
     memcpy(&list, base, sizeof list);
-    int n = k->type == PW_KEY_PAIR ? 2 : k->type == PW_KEY_REAL ? 1 : list.n;
+    int n = k->type == PW_KEY_PAIR     ? 2
+            : k->type == PW_KEY_TRIPLE ? 3
+            : k->type == PW_KEY_REAL   ? 1
+                                       : list.n;
     for (int i = 0; i < n; i++) {
       pw_real v;
       size_t first = k->type == PW_KEY_REALS ? offsetof(pw_reals, v) : 0;
@@ -202,6 +240,7 @@ static void rows_are_sound(void **state)
 {
   (void)state;
   for_each_table(check_table, NULL);
+  for_each_solid_table(check_table, NULL);
   for (int i = 0; pw_material_at(i); i++) {
     const pw_key *keys = pw_material_at(i)->keys;
     for (const pw_key *k = keys; k->name; k++) {
@@ -256,6 +295,7 @@ static void the_listing_holds_every_key(void **state)
   (void)state;
   char *text = print(pw_keys_print);
   for_each_table(find_rows, text);
+  for_each_solid_table(find_rows, text);
   assert_non_null(strstr(text, "\n  cfl       -     number  > 0 and <= 0.95   0.5       -      "
                                "step as a fraction of"));
   free(text);

@@ -60,7 +60,8 @@ static void solutions_are_found(void **state)
     pw_solver *s;
     pw_csr m;
     assert_ok(pw_csr_create(&mesh, !symmetric, &m));
-    assert_ok(pw_solver_create(symmetric, 1, &s));
+    pw_solver_options options = pw_solver_defaults(symmetric);
+    assert_ok(pw_solver_create(&options, &s));
     number(&m, 0);
     fill(&m, symmetric, 1.1);
     check_solution(s, &m);

@@ -3,6 +3,7 @@
  * that says so with the element as it was, or a step in pieces; wrong libraries and numbers of
  * constants are refused before anything runs. */
 #include "engine/element_test.h"
+#include "tests/engine_helpers.h"
 #include "tests/umat_helpers.h"
 
 /** A move fails, says @p words, and changes nothing but that. */

@@ -2,8 +2,10 @@
 /* A UMAT for von Mises plasticity gives what the built-in models give where the equations are the
  * same: Hooke's law in rate form (linear_elastic), perfect plasticity in rate form (drucker_prager
  * without friction), and hardening on paths without rotation and change of volume, where the
- * Kirchhoff stress over the logarithmic strain of hencky_von_mises is the true stress. */
+ * Kirchhoff stress over the logarithmic strain of hencky_von_mises is the true stress. A routine
+ * that takes the deformation gradient is hencky_von_mises on every path. */
 #include "engine/element_test.h"
+#include "tests/engine_helpers.h"
 #include "tests/umat_helpers.h"
 
 enum { ROWS = 700 };
@@ -112,24 +114,68 @@ static void hardening_is_that_of_hencky_von_mises(void **state)
   compare(&user, &own, undrained, 0.0, 1e5, true);
 }
 
-/* A block that falls on a rough floor, in steps of a given length. */
-static void fall(const pw_scene_material *m, int threads, pw_sim **out)
+/* A block that falls on a rough floor, in steps of a given length; a cylinder with PW_AXI. */
+static void fall_with(const pw_scene_material *m, int geometry, bool fbar, int threads,
+                      pw_sim **out)
 {
   static pw_scene s;
   pw_scene_default(&s);
-  s.geometry = PW_PLANE;
+  s.geometry = geometry;
   s.time.dt_s = 5e-4;
   test_grid(&s, (pw_real[]){0.0, 1.2, 0.0, 1.0}, 0.1);
   s.material[s.nmaterial++] = *m;
   pw_scene_body *b = test_rectangle(&s, 0, (pw_real[]){0.3, 0.9, 0.0, 0.6}, 0.05);
   b->velocity_m_s[1] = -2.0;
   b->velocity_m_s[0] = 0.5;
+  if (fbar) {
+    ((pw_fbar_param *)pw_scene_add_effect(&s, "fbar"))->body = -1;
+  }
   pw_boundary_param *floor = pw_scene_add_effect(&s, "boundary");
   assert_non_null(floor);
   floor->side = PW_SIDE_BOTTOM;
   floor->fix_x = floor->fix_y = true;
   *out = test_sim(&s, threads);
   test_run_to(*out, 0.03);
+}
+
+static void fall(const pw_scene_material *m, int threads, pw_sim **out)
+{
+  fall_with(m, PW_PLANE, false, threads, out);
+}
+
+/* A routine that takes DFGRD0 and DFGRD1 gets those of F-bar where there is one: its stress is that
+ * of hencky_von_mises, and their ratio of volumes that of the material. */
+static void finite_strain_is_that_of_hencky_von_mises(void **state)
+{
+  (void)state;
+  const char *const key[] = {"yield_uniaxial_pa", "hardening_modulus_pa", NULL};
+  const double value[] = {1e4, 5e5};
+  pw_scene_material user = umat_material("umat_hencky_", 1e4, 5e5);
+  pw_scene_material own = built_in("hencky_von_mises", key, value);
+  umat_number(&user, "nstatv", 7);
+  umat_number(&user, "ddsdde_measure", 1);
+  umat_number(&user, "thread_safe", 1);
+  compare(&user, &own, shear, 0.0, 1e5, true);
+  compare(&user, &own, biaxial, 0.0, 1e5, true);
+  for (int k = 0; k < 8; k++) {
+    pw_sim *a = NULL, *b = NULL;
+    fall_with(&user, k & 1 ? PW_AXI : PW_PLANE, k & 2, 1 + (k >> 2), &a);
+    fall_with(&own, k & 1 ? PW_AXI : PW_PLANE, k & 2, 1 + (k >> 2), &b);
+    pw_real plastic = 0.0, worst = 0.0;
+    for (pw_idx i = 0; i < a->points.n; i++) {
+      for (int c = 0; c < 6; c++) {
+        pw_off at = (pw_off)c * a->points.ld + i;
+        worst = pw_max(worst, fabs(a->points.stress[at] - b->points.stress[at]) / 1e5);
+      }
+      plastic = pw_max(plastic, a->points.state[(pw_off)PW_UMAT_OWN * a->points.ld + i]);
+      assert_near(a->points.x[i], b->points.x[i], 1e-10);
+    }
+    print_message("%s F-bar %d: %.1e of 100 kPa, plastic strain %.2g\n", k & 1 ? "axi" : "plane",
+                  (k & 2) / 2, worst, plastic);
+    assert_true(worst <= 1e-10 && plastic > 1e-3);
+    pw_sim_destroy(&a);
+    pw_sim_destroy(&b);
+  }
 }
 
 static void explicit_steps_give_the_same(void **state)
@@ -197,6 +243,7 @@ int main(void)
       cmocka_unit_test(perfect_plasticity_is_that_of_drucker_prager),
       cmocka_unit_test(hardening_is_that_of_hencky_von_mises),
       cmocka_unit_test(explicit_steps_give_the_same),
+      cmocka_unit_test(finite_strain_is_that_of_hencky_von_mises),
       cmocka_unit_test(threads_give_the_same_bits),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);

@@ -3,6 +3,7 @@
  * components, engineering shears, rotation, deformation gradients, times, names, Abaqus' own
  * routines, stiffness. */
 #include "kernels/tensor.h"
+#include "tests/engine_helpers.h"
 #include "tests/umat_helpers.h"
 
 static const double pi = 3.14159265358979323846;

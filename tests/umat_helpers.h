@@ -6,10 +6,11 @@
 #ifndef PW_TESTS_UMAT_HELPERS_H
 #define PW_TESTS_UMAT_HELPERS_H
 
+#include "engine/scene.h"
 #include "engine/scene_keys.h"
 #include "engine/umat.h"
 #include "kernels/element_driver.h"
-#include "tests/engine_helpers.h"
+#include "tests/harness.h"
 
 /** Set a number, a list or a text by its key's name. */
 static inline void umat_set(pw_scene_material *m, const char *name, const pw_key_value *value)

@@ -7,6 +7,8 @@
 #include <stdint.h>
 #include <string.h>
 
+#include "kernels/spectral.h"
+
 typedef double real;
 typedef int32_t integer;
 
@@ -24,6 +26,7 @@ typedef int32_t integer;
       pnewdt, celent, dfgrd0, dfgrd1, noel, npt, layer, kspt, kstep, kinc, cmname_length
 
 void umat_(ARGUMENTS);
+void umat_hencky_(ARGUMENTS);
 void umat_elastic_(ARGUMENTS);
 void umat_stop_(ARGUMENTS);
 void umat_xit_(ARGUMENTS);
@@ -33,6 +36,7 @@ void umat_reads_beyond_(ARGUMENTS);
 void umat_writes_beyond_(ARGUMENTS);
 void umat_small_steps_(ARGUMENTS);
 void umat_never_content_(ARGUMENTS);
+void umat_fragile_(ARGUMENTS);
 void umat_lazy_(ARGUMENTS);
 void umat_no_tangent_(ARGUMENTS);
 void umat_careless_(ARGUMENTS);
@@ -77,6 +81,89 @@ void umat_(ARGUMENTS)
       c += i == j ? (i < 3 ? 2.0 : 1.0) * ratio * shear : 0.0;
       ddsdde[i + 6 * j] = over > 0.0 ? c - along / (q * q) * dev[i] * dev[j] : c;
     }
+  }
+}
+
+/* Finite strain as in cases/umat_von_mises: Hencky elasticity from DFGRD0 and DFGRD1, DDSDDE of the
+ * Kirchhoff stress. props as of umat_; statev: plastic strain, elastic b (11 22 33 12 13 23). */
+static void increment_of_f(const real *before, const real *after, real *f)
+{
+  real inverse[9], det = 0.0; /* column-major like the others */
+  for (int k = 0; k < 9; k++) {
+    int i = k % 3, j = k / 3, r = (i + 1) % 3, s = (i + 2) % 3, u = (j + 1) % 3, w = (j + 2) % 3;
+    inverse[j + 3 * i] =
+        before[r + 3 * u] * before[s + 3 * w] - before[r + 3 * w] * before[s + 3 * u];
+    det += j == 0 ? before[i] * inverse[3 * i] : 0.0;
+  }
+  for (int k = 0; k < 9; k++) {
+    const real *row = after + k % 3, *col = inverse + 3 * (k / 3);
+    f[k] = (row[0] * col[0] + row[3] * col[1] + row[6] * col[2]) / det;
+  }
+}
+
+/* Principal logarithmic strains and axes of the trial state. */
+static pw_spectrum trial_of(const real *f, const real *b, real *strain)
+{
+  const pw_rot r = {f[0], f[3], f[6], f[1], f[4], f[7], f[2], f[5], f[8]};
+  const pw_t6 old = {b[0], b[1], b[2], b[3], b[5], b[4]};
+  pw_spectrum s = pw_t6_spectrum(pw_t6_rotate(r, old));
+  for (int k = 0; k < 3; k++) {
+    strain[k] = 0.5 * log(s.value[k]);
+  }
+  return s;
+}
+
+static void store(pw_t6 t, real factor, real *out)
+{
+  const real v[6] = {t.xx, t.yy, t.zz, t.xy, t.zx, t.yz};
+  for (int k = 0; k < 6; k++) {
+    out[k] = factor * v[k];
+  }
+}
+
+void umat_hencky_(ARGUMENTS)
+{
+  const int row[6] = {0, 1, 2, 0, 0, 1}, col[6] = {0, 1, 2, 1, 2, 2};
+  const real shear = 0.5 * props[0] / (1.0 + props[1]), bulk = props[0] / (3.0 - 6.0 * props[1]);
+  real f[9], e[3], dev[3], tau[3], b[3], q = 0.0, start[6] = {1, 1, 1, 0, 0, 0};
+  increment_of_f(dfgrd0, dfgrd1, f);
+  const pw_spectrum s = trial_of(f, statev[1] > 0.0 ? statev + 1 : start, e);
+  const real tr = e[0] + e[1] + e[2], jac = exp(tr);
+  for (int k = 0; k < 3; k++) {
+    dev[k] = 2.0 * shear * (e[k] - tr / 3.0);
+    q += 1.5 * dev[k] * dev[k];
+  }
+  q = sqrt(q);
+  real over = q - props[2] - props[3] * statev[0], stiff = 3.0 * shear + props[3];
+  real flow = over > 0.0 ? over / stiff : 0.0,
+       ratio = over > 0.0 ? 1.0 - 3.0 * shear * flow / q : 1.0;
+  real along = over > 0.0 ? 3.0 * shear * (ratio - props[3] / stiff) / (q * q) : 0.0;
+  statev[0] += flow;
+  for (int k = 0; k < 3; k++) {
+    tau[k] = bulk * tr + ratio * dev[k];
+    b[k] = exp(ratio * dev[k] / shear + 2.0 / 3.0 * tr);
+  }
+  store(pw_spectrum_tensor(&s, tau), 1.0 / jac, stress);
+  store(pw_spectrum_tensor(&s, b), 1.0, statev + 1);
+  for (int k = 0; k < 36; k++) { /* change of tau_ij in the axes for a unit strain, summed back */
+    const int p = row[k / 6], r = col[k / 6];
+    real sum = 0.0, unit[9], trace = 0.0, onto = 0.0;
+    for (int ij = 0; ij < 9; ij++) {
+      const real *n = s.vector + 3 * (ij / 3), *m = s.vector + 3 * (ij % 3);
+      const real x = e[ij / 3] - e[ij % 3];
+      unit[ij] =
+          0.5 * (n[p] * m[r] + n[r] * m[p]) * (fabs(x) > 1e-4 ? x / tanh(x) : 1.0 + x * x / 3.0);
+      trace += ij % 4 == 0 ? unit[ij] : 0.0;
+      onto += ij % 4 == 0 ? unit[ij] * dev[ij / 3] : 0.0;
+    }
+    for (int ij = 0; ij < 9; ij++) {
+      real change = 2.0 * shear * ratio * unit[ij];
+      change += ij % 4 == 0
+                    ? (bulk - 2.0 / 3.0 * shear * ratio) * trace - along * onto * dev[ij / 3]
+                    : 0.0;
+      sum += change * s.vector[3 * (ij / 3) + row[k % 6]] * s.vector[3 * (ij % 3) + col[k % 6]];
+    }
+    ddsdde[k] = sum / jac;
   }
 }
 
@@ -166,6 +253,17 @@ void umat_never_content_(ARGUMENTS)
   *pnewdt = moves(dstran) ? 0.25 : 1.0;
 }
 
+/* Stops at a strain increment beyond 2.5e-3. */
+void umat_fragile_(ARGUMENTS)
+{
+  umat_(PASSED);
+  for (int i = 0; i < 6; i++) {
+    if (fabs(dstran[i]) > 2.5e-3) {
+      _gfortran_stop_string("increment too large", 19, false);
+    }
+  }
+}
+
 /* Drops the increment, as routines do whose integration has failed. */
 void umat_lazy_(ARGUMENTS)
 {
@@ -199,7 +297,8 @@ void umat_careless_(ARGUMENTS)
 }
 
 /* What it is told, as state: 6 strains, times, length of the increment, calls, rotation, the two
- * deformation gradients (rows 1 and 2 of columns 1 and 2), length of the name. 24 numbers. */
+ * deformation gradients (rows 1 and 2 of columns 1 and 2), length of the name: 24 numbers; where
+ * there is room, NOEL and the place: 28. */
 void umat_spy_(ARGUMENTS)
 {
   umat_elastic_(PASSED);
@@ -217,6 +316,10 @@ void umat_spy_(ARGUMENTS)
     statev[14 + 4 * k] = matrix[k][4];
   }
   statev[23] = (real)cmname_length + (cmname[0] == 'S' && cmname[3] == ' ' ? 0.5 : 0.0);
+  if (*nstatv >= 28) {
+    statev[24] = *noel;
+    memcpy(statev + 25, coords, 3 * sizeof *coords);
+  }
 }
 
 /* Abaqus' own routines on a tensor 11 22 33 12 13 23 = 1..6: 20 numbers. */

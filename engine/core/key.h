@@ -19,6 +19,7 @@ enum { PW_NAME = 64, PW_LIST = 64, PW_FILE_NAME = 256 };
 typedef enum pw_key_type {
   PW_KEY_REAL,     /**< pw_real, finite */
   PW_KEY_PAIR,     /**< pw_real[2], written [a, b] */
+  PW_KEY_TRIPLE,   /**< pw_real[3], written [x, y, z] */
   PW_KEY_REALS,    /**< pw_reals, written [a, b, ...], at most PW_LIST */
   PW_KEY_INT,      /**< int */
   PW_KEY_BOOL,     /**< bool, written true | false */

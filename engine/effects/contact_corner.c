@@ -17,6 +17,7 @@
 #include "engine/effects/contact_corner.h"
 
 #include "engine/core/mem.h"
+#include "engine/rates.h"
 
 #define AT(member) offsetof(pw_contact_corner_param, member)
 
@@ -93,15 +94,41 @@ static void bind_step(pw_sim *sim, pw_corner *c)
   pw_round_line_update(&c->surface, &sim->mesh);
 }
 
+/* Step for the next forces. What has been let go may be back at once, driven by the stress that the
+ * contact held: the step then grows by and by to that of the bodies, and finds it in time. */
+static pw_real next_step(const pw_sim *sim, pw_corner *c)
+{
+  static const pw_real growth = 1.5;
+  pw_real limit = pw_corner_limit(c), last = sim->dt_contact;
+  return c->npair == 0 && last > 0.0 && last < sim->dt_next ? growth * last : limit;
+}
+
+/* Blocks that can come into contact before their next step take the shortest ones: a spring must
+ * see its site move. */
+static void pin_blocks(const pw_corner *c)
+{
+  const pw_sim *sim = c->sim;
+  const pw_mesh *m = &sim->mesh;
+  const pw_real *box = c->surface.box;
+  for (pw_idx k = 0; sim->rates && k < sim->blocks.nblock; k++) {
+    const pw_idx *to = c->box + 4 * (pw_off)k; /* its own reach and a cell more */
+    const bool across = pw_mesh_node_x(m, to[0]) <= box[1] && pw_mesh_node_x(m, to[1]) >= box[0];
+    sim->rates->pinned[k] = across && pw_mesh_node_y(m, to[2] * m->nodes[0]) <= box[3] &&
+                            pw_mesh_node_y(m, to[3] * m->nodes[0]) >= box[2];
+  }
+}
+
 static pw_status add_forces(pw_sim *sim, void *ctx)
 {
   pw_corner *c = ctx;
   pw_real spring, dissipated;
   bind_step(sim, c);
+  pin_blocks(c);
   pw_contact_tally_begin(&c->tally);
   PW_TRY(pw_corner_search(c));
-  sim->dt_contact = pw_corner_limit(c);
+  sim->dt_contact = next_step(sim, c);
   pw_corner_forces(c, &spring, &dissipated);
+  c->last_dt = sim->dt;
   pw_contact_tally_end(&c->tally, sim->measure, sim->dt);
   sim->energy.spring += sim->measure * spring;
   sim->energy.contact += sim->measure * dissipated;
@@ -235,18 +262,20 @@ static pw_status archive(pw_sim *sim, void *ctx, pw_archive *ar)
 {
   (void)sim;
   pw_corner *c = ctx;
-  pw_real value[5] = {c->master_modulus, c->centre_max, c->softest, c->stiffest, c->offset_max};
+  pw_real value[6] = {c->master_modulus, c->centre_max,  c->softest,
+                      c->stiffest,       c->offset_max, c->last_dt};
   PW_TRY(pw_contact_tally_archive(&c->tally, "contact_corner/reaction", ar));
   if (!c->structure) {
     PW_TRY(pw_interface_archive(&c->own, "contact_corner/master", ar));
   }
-  PW_TRY(ar->real(ar, "contact_corner/numbers", value, 5));
+  PW_TRY(ar->real(ar, "contact_corner/numbers", value, 6));
   PW_TRY(ar->offset(ar, "contact_corner/reduced", &c->reduced, 1));
   c->master_modulus = value[0];
   c->centre_max = value[1];
   c->softest = value[2];
   c->stiffest = value[3];
   c->offset_max = value[4];
+  c->last_dt = value[5];
   return PW_OK;
 }
 

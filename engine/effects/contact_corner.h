@@ -16,11 +16,15 @@
 #include "engine/effects/contact.h"
 #include "engine/effects/contact_corner_surface.h"
 
+/** Arc of a site that has been found, but not held yet; any other that is not in contact has -1. */
+#define PW_CORNER_WAITING (-2.0)
+
 /** A site in contact in this step. */
 typedef struct pw_corner_pair {
   pw_idx point;
   int site;   /**< corner or edge's middle: engine/domain_sites.h */
   bool fresh; /**< was not in contact in the last step */
+  bool waits; /**< new, and too stiff for this step: no force yet */
   pw_round_place place;
   pw_real overlap;   /**< what of the gap makes force, >= 0; m */
   pw_real advance;   /**< way along the surface since the last step; m */
@@ -66,6 +70,7 @@ typedef struct pw_corner {
   pw_real *slave_rec, *master_rec;
   bool given; /**< the master's motion is prescribed */
   /* Of the run: */
+  pw_real last_dt;           /**< the last step; s */
   pw_real centre_max;        /**< deepest centre of a point; m */
   pw_real softest, stiffest; /**< Pa/m */
   pw_off reduced;            /**< sites whose stiffness was reduced for a step */

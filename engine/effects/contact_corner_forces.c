@@ -40,6 +40,9 @@ static void push(pw_corner *c, pw_corner_pair *q, pw_corner_sums *sums)
 {
   pw_points *p = &c->sim->points;
   const pw_off at = (pw_off)q->site * p->ld + q->point;
+  if (q->waits) {
+    return;
+  }
   const pw_real before = q->fresh ? q->stiffness : p->contact_stiffness[at] * q->area;
   pull_along(c->param, q, before, &p->contact_slip[at], sums);
   p->contact_arc[at] = q->place.arc;

@@ -148,6 +148,26 @@ static pw_real slave_rate(pw_corner *c)
   return pw_min(by_points, by_nodes);
 }
 
+/*
+ * A pair too stiff for this step. Its overlap, when it is new, was found too late: a spring over it
+ * would hold more energy than the motion that made it. It waits for the next step, which resolves
+ * it, and counts as new there, so that what this step has overlapped makes no force. When that step
+ * is no shorter, being fixed, or the pair lasts, it is held by a part of its stiffness.
+ */
+static void soften(pw_corner *c, pw_corner_pair *q, pw_real part)
+{
+  pw_points *p = &c->sim->points;
+  const pw_off at = (pw_off)q->site * p->ld + q->point;
+  c->reduced++;
+  if (q->fresh && p->contact_arc[at] != PW_CORNER_WAITING) {
+    q->waits = true;
+    p->contact_arc[at] = PW_CORNER_WAITING;
+    return;
+  }
+  q->stiffness *= part;
+  q->density *= part;
+}
+
 pw_real pw_corner_limit(pw_corner *c)
 {
   if (c->npair == 0) {
@@ -162,12 +182,8 @@ pw_real pw_corner_limit(pw_corner *c)
     rate += rates_on_grid(c, 1, c->master_rec);
   }
   for (pw_idx k = 0; k < c->npair; k++) {
-    pw_corner_pair *q = &c->pair[k];
-    if ((q->rate + shift) * dt2 > LIMIT2) {
-      pw_real part = LIMIT2 / ((q->rate + shift) * dt2);
-      q->stiffness *= part;
-      q->density *= part;
-      c->reduced++;
+    if ((c->pair[k].rate + shift) * dt2 > LIMIT2) {
+      soften(c, &c->pair[k], LIMIT2 / ((c->pair[k].rate + shift) * dt2));
     }
   }
   return rate > 0.0 ? RESOLVE / sqrt(rate) : 0.0;

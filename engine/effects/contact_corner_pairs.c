@@ -118,19 +118,23 @@ static pw_real stiffness_of(const pw_corner *c, const pw_domain_now *d)
   return c->param->stiffness_factor * modulus / pw_domain_half_size(p, d);
 }
 
-/* How far site and surface have closed in a step, by the velocities at its start. */
+/* How far site and surface have closed in a step, by the velocities at its start. The surface's way
+ * is that of the last step; a site that waited was found in a longer one, which must not count. */
 static pw_real closing(const pw_corner *c, const pw_corner_pair *q, const pw_domain_now *d)
 {
   const pw_sim *sim = c->sim;
   const pw_interface *line = c->surface.line;
   const pw_interface_node *a = &line->node[q->place.segment];
   const pw_interface_node *b = &line->node[pw_interface_next(line, q->place.segment)];
+  const pw_off at = (pw_off)q->site * sim->points.ld + q->point;
+  const bool waited = sim->points.contact_arc[at] == PW_CORNER_WAITING;
+  const pw_real part = waited ? pw_min(sim->dt / c->last_dt, 1.0) : 1.0;
   pw_real v[2], sum = 0.0;
   pw_site_velocity(&sim->points, d, q->site, sim->mesh.nodes[0], sim->mass_cut_off, c->slave_rec,
                    v);
   for (int k = 0; k < 2; k++) {
     pw_real master = (1.0 - q->place.xi) * a->du[k] + q->place.xi * b->du[k];
-    sum += q->place.n[k] * (master - sim->dt * v[k]);
+    sum += q->place.n[k] * (part * master - sim->dt * v[k]);
   }
   return pw_max(sum, 0.0);
 }

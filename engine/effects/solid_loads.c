@@ -1,0 +1,296 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Loads: tractions on surfaces of the mesh, and gravity.
+ *
+ * Tractions act on the surface where the mesh has it at the start; they keep their direction (dead
+ * loads). Gravity acts on the points where they are at the start of a part of a step.
+ */
+#include "engine/effects/solid_params.h"
+
+#include <math.h>
+#include <stdio.h>
+
+#include "engine/core/mem.h"
+#include "engine/tet_loads.h"
+
+#define AT(member) offsetof(pw_traction_param, member)
+
+/* clang-format off */
+static const pw_key traction_keys[] = {
+  {"group", PW_KEY_TEXT, AT(group), 0, 0, NULL, NULL, NULL,
+   "surface of the mesh, or side of a box, that is loaded"},
+  {"kind", PW_KEY_CHOICE, AT(kind), 0, 0, "pressure", "pressure|traction|force", NULL,
+   "a pressure onto the surface, a traction, or a force spread evenly over it"},
+  {"pressure_pa", PW_KEY_REAL, AT(pressure_pa), -1e15, 1e15, NULL, NULL, "kind=pressure",
+   "pressure in the end, onto the body"},
+  {"traction_pa", PW_KEY_TRIPLE, AT(traction_pa), -1e15, 1e15, NULL, NULL, "kind=traction",
+   "force per area in the end"},
+  {"total_force_n", PW_KEY_TRIPLE, AT(force_n), -1e15, 1e15, NULL, NULL, "kind=force",
+   "force on the whole surface in the end"},
+  PW_SOLID_RAMP_KEYS(AT(ramp)),
+  {0}};
+
+static const pw_key gravity_keys[] = {
+  {"acceleration_m_s2", PW_KEY_TRIPLE, offsetof(pw_solid_gravity_param, acceleration_m_s2), -1e6,
+   1e6, NULL, NULL, NULL, "acceleration of gravity in the end"},
+  PW_SOLID_RAMP_KEYS(offsetof(pw_solid_gravity_param, ramp)),
+  {0}};
+/* clang-format on */
+
+typedef struct load {
+  const void *param;
+  const pw_solid_ramp *ramp;
+  int number;
+  pw_idx n;
+  pw_idx *node;   /* [n] traction: loaded nodes */
+  pw_real *force; /* [n][3] traction: whole force of a node; N */
+  pw_real part;   /* of the load, so far */
+  pw_real sum[3]; /* whole force; N */
+} load;
+
+static void destroy(void **ctx)
+{
+  load *l = *ctx;
+  if (l) {
+    pw_mem_free(&l->node);
+    pw_mem_free(&l->force);
+  }
+  pw_mem_free(ctx);
+}
+
+static void moved(pw_implicit *sim, void *ctx, pw_real to)
+{
+  load *l = ctx;
+  l->part = pw_solid_course(sim, l->ramp->start_step, l->ramp->ramp_steps, to);
+}
+
+/* Area vector of a triangle, either way round: half the cross product of two edges. */
+static void area_of(const pw_solid_mesh *mesh, const pw_idx *face, pw_real *area)
+{
+  const pw_tet_input *in = &mesh->input;
+  pw_real a[3], b[3];
+  for (int c = 0; c < 3; c++) {
+    const pw_real *x = in->x + (pw_off)c * in->nnode;
+    a[c] = x[face[1]] - x[face[0]];
+    b[c] = x[face[2]] - x[face[0]];
+  }
+  for (int c = 0; c < 3; c++) {
+    area[c] = 0.5 * (a[(c + 1) % 3] * b[(c + 2) % 3] - a[(c + 2) % 3] * b[(c + 1) % 3]);
+  }
+}
+
+static bool same_face(const pw_idx *a, const pw_idx *b)
+{
+  int common = 0;
+  for (int i = 0; i < 9; i++) {
+    common += a[i / 3] == b[i % 3];
+  }
+  return common == 3;
+}
+
+/* The face of the mesh's boundary that a triangle is, as 4 e + f; -1: it is inside. */
+static pw_idx boundary_face(const pw_tets *t, const pw_idx *triangle)
+{
+  for (pw_idx k = t->node_start[triangle[0]]; k < t->node_start[triangle[0] + 1]; k++) {
+    const pw_idx e = t->node_elem[k];
+    for (pw_idx f = 0; f < 4; f++) {
+      pw_idx node[3];
+      for (int i = 0; i < 3; i++) {
+        node[i] = t->node[4 * e + pw_tet_face[f][i]];
+      }
+      if (t->beside[4 * e + f] < 0 && same_face(node, triangle)) {
+        return 4 * e + f;
+      }
+    }
+  }
+  return -1;
+}
+
+/* Traction on a triangle with the outward area vector @p area. */
+static void force_of(const pw_traction_param *p, const pw_real *area, pw_real whole, pw_real *force)
+{
+  const pw_real size = sqrt(area[0] * area[0] + area[1] * area[1] + area[2] * area[2]);
+  for (int c = 0; c < 3; c++) {
+    force[c] = p->kind == PW_LOAD_PRESSURE   ? -p->pressure_pa * area[c]
+               : p->kind == PW_LOAD_TRACTION ? p->traction_pa[c] * size
+                                             : p->force_n[c] * size / whole;
+  }
+}
+
+/* Place of a node in the ascending list of a group. */
+static pw_idx place_of(const pw_solid_group *g, pw_idx node)
+{
+  pw_idx low = 0, high = g->nnode - 1;
+  while (low < high) {
+    const pw_idx middle = (low + high) / 2;
+    if (g->node[middle] < node) {
+      low = middle + 1;
+    } else {
+      high = middle;
+    }
+  }
+  return low;
+}
+
+static pw_status spread(const pw_implicit *sim, const pw_solid_mesh *mesh, const pw_solid_group *g,
+                        load *l)
+{
+  pw_real whole = 0.0, area[3];
+  for (pw_idx k = 0; k < g->nface; k++) {
+    area_of(mesh, g->face + 3 * k, area);
+    whole += sqrt(area[0] * area[0] + area[1] * area[1] + area[2] * area[2]);
+  }
+  for (pw_idx k = 0; k < g->nface; k++) {
+    pw_real force[3];
+    const pw_idx face = boundary_face(&sim->mesh.tets, g->face + 3 * k);
+    PW_REQUIRE(face >= 0, PW_ERR_SCENE,
+               "traction.%d.group: the surface '%s' does not lie on the boundary of the mesh",
+               l->number, g->name);
+    pw_idx outward[3];
+    for (int i = 0; i < 3; i++) {
+      outward[i] = sim->mesh.tets.node[4 * (face / 4) + pw_tet_face[face % 4][i]];
+    }
+    area_of(mesh, outward, area);
+    force_of(l->param, area, whole, force);
+    for (int i = 0; i < 9; i++) {
+      l->force[3 * place_of(g, outward[i / 3]) + i % 3] += force[i % 3] / 3.0;
+      l->sum[i % 3] += force[i % 3] / 3.0;
+    }
+  }
+  return PW_OK;
+}
+
+static pw_status create_traction(pw_implicit *sim, const pw_solid_mesh *mesh, const void *param,
+                                 void **ctx)
+{
+  load *l;
+  const pw_traction_param *p = param;
+  const pw_solid_group *g = NULL;
+  char path[PW_NAME];
+  PW_TRY(pw_mem_alloc("traction", 1, sizeof *l, &l));
+  *ctx = l;
+  l->param = param;
+  l->ramp = &p->ramp;
+  l->number = pw_solid_instance_of(sim, param);
+  snprintf(path, sizeof path, "traction.%d.group", l->number);
+  PW_TRY(pw_solid_mesh_find(mesh, 2, p->group, path, &g));
+  PW_REQUIRE(g->nface > 0, PW_ERR_SCENE, "%s: the surface '%s' has no triangles", path, g->name);
+  l->n = g->nnode;
+  PW_TRY(pw_mem_alloc("traction: nodes", l->n, sizeof *l->node, &l->node));
+  PW_TRY(pw_mem_alloc("traction: forces", 3 * (pw_off)l->n, sizeof *l->force, &l->force));
+  for (pw_idx i = 0; i < l->n; i++) {
+    l->node[i] = g->node[i];
+  }
+  return spread(sim, mesh, g, l);
+}
+
+static void apply_traction(pw_implicit *sim, void *ctx, pw_real from, pw_real to)
+{
+  const load *l = ctx;
+  const size_t nnode = (size_t)sim->mesh.tets.nnode;
+  const pw_real part = pw_solid_course(sim, l->ramp->start_step, l->ramp->ramp_steps, to);
+  (void)from;
+  for (pw_idx i = 0; i < l->n; i++) {
+    for (size_t c = 0; c < 3; c++) {
+      sim->model.external[c * nnode + (size_t)l->node[i]] += part * l->force[3 * i + (pw_idx)c];
+    }
+  }
+}
+
+static void history_traction(const pw_implicit *sim, void *ctx, pw_record *row)
+{
+  const load *l = ctx;
+  char name[64];
+  (void)sim;
+  for (int c = 0; c < 3; c++) {
+    if (l->sum[c] != 0.0) {
+      snprintf(name, sizeof name, "traction_%d_force_%c_n", l->number, "xyz"[c]);
+      pw_record_put(row, name, l->part * l->sum[c]);
+    }
+  }
+}
+
+static pw_status archive_load(pw_implicit *sim, void *ctx, pw_archive *ar)
+{
+  load *l = ctx;
+  char name[64];
+  (void)sim;
+  snprintf(name, sizeof name, "%s_%d/part", l->force ? "traction" : "gravity", l->number);
+  return ar->real(ar, name, &l->part, 1);
+}
+
+static pw_status create_gravity(pw_implicit *sim, const pw_solid_mesh *mesh, const void *param,
+                                void **ctx)
+{
+  load *l;
+  const pw_solid_gravity_param *p = param;
+  (void)mesh;
+  PW_TRY(pw_mem_alloc("gravity", 1, sizeof *l, &l));
+  *ctx = l;
+  l->param = param;
+  l->ramp = &p->ramp;
+  for (pw_idx i = 0; i < sim->model.points.n; i++) {
+    for (int c = 0; c < 3; c++) {
+      l->sum[c] += sim->model.points.mass[i] * p->acceleration_m_s2[c];
+    }
+  }
+  return PW_OK;
+}
+
+static void apply_gravity(pw_implicit *sim, void *ctx, pw_real from, pw_real to)
+{
+  const load *l = ctx;
+  const pw_solid_gravity_param *p = l->param;
+  const pw_real part = pw_solid_course(sim, l->ramp->start_step, l->ramp->ramp_steps, to);
+  pw_real g[3];
+  (void)from;
+  for (int c = 0; c < 3; c++) {
+    g[c] = part * p->acceleration_m_s2[c];
+  }
+  pw_tet_model_gravity(&sim->model, g);
+}
+
+static void history_gravity(const pw_implicit *sim, void *ctx, pw_record *row)
+{
+  const load *l = ctx;
+  char name[64];
+  (void)sim;
+  for (int c = 0; c < 3; c++) {
+    if (l->sum[c] != 0.0) {
+      snprintf(name, sizeof name, "weight_%c_n", "xyz"[c]);
+      pw_record_put(row, name, l->part * l->sum[c]);
+    }
+  }
+}
+
+static const pw_solid_hooks traction_hooks = {
+    .create = create_traction,
+    .destroy = destroy,
+    .apply = apply_traction,
+    .moved = moved,
+    .history = history_traction,
+    .archive = archive_load,
+};
+
+static const pw_solid_hooks gravity_hooks = {
+    .create = create_gravity,
+    .destroy = destroy,
+    .apply = apply_gravity,
+    .moved = moved,
+    .history = history_gravity,
+    .archive = archive_load,
+};
+
+const pw_effect pw_effect_traction = {
+    .name = "traction",
+    .brief = "pressure, traction or force on a surface of the mesh",
+    .many = true,
+    .keys = traction_keys,
+    .solid = &traction_hooks,
+};
+
+const pw_effect pw_effect_solid_gravity = {
+    .name = "gravity",
+    .brief = "weight of the points",
+    .keys = gravity_keys,
+    .solid = &gravity_hooks,
+};

@@ -1,0 +1,305 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "engine/newton_part.h"
+
+#include <math.h>
+#include <string.h>
+
+static const pw_real hopeless = 1e8;     /* a residual this far above the first ends a part */
+static const pw_real on_the_way = 1e-3;  /* residual of a solution that only leads to another */
+static const pw_real sufficient = 0.999; /* part of the residual a searched correction may leave */
+static const pw_real loosest = 1e-3;     /* part that an iterative solve may leave, at most */
+static const pw_real tightest = 1e-12;   /* and at least */
+
+static bool dynamic(const pw_newton *n)
+{
+  return n->options.newmark.on;
+}
+
+static pw_status evaluate(pw_newton *n, bool tangent)
+{
+  if (dynamic(n)) {
+    pw_tet_rates_update(n->model, &n->rates, n->u, n->model->dt);
+  }
+  return pw_tet_model_evaluate(n->model, n->u, tangent);
+}
+
+/* Right-hand side from what is left at free components, and its norm over that of all loads. */
+static pw_real residual(pw_newton *n)
+{
+  const pw_tet_model *m = n->model;
+  pw_real left = 0.0, load = 0.0;
+  for (size_t i = 0; i < n->dofs; i++) {
+    const pw_idx eq = m->equation[i];
+    const pw_real inertia = dynamic(n) ? m->inertia.force[i] : 0.0;
+    if (eq >= 0) {
+      const pw_real r = m->external[i] + n->unbalanced[i] - m->force[i] - inertia;
+      n->right[eq] = r;
+      left += r * r;
+      load += m->external[i] * m->external[i] + inertia * inertia;
+    } else if (m->fixed[i]) { /* a reaction */
+      load += (m->force[i] + inertia) * (m->force[i] + inertia);
+    }
+  }
+  if (!(load > 0.0)) { /* nothing acts: all that may be left is rounding */
+    n->floor = 0.0;
+    return sqrt(left) <= m->rounding ? 0.0 : INFINITY;
+  }
+  n->floor = m->rounding / sqrt(load);
+  return sqrt(left / load);
+}
+
+/* What an iterative solve is to leave of the residual r: no more than Newton's method itself will,
+ * by what the last correction did (Eisenstat & Walker, SIAM J. Sci. Comput. 17 (1996) 16, choice 2),
+ * but nothing below the tolerance. */
+static void aim(pw_newton *n, pw_real tolerance, const pw_newton_report *report)
+{
+  const int k = report->count - 1;
+  const pw_real r = report->residual[k], before = k > 0 ? report->residual[k - 1] : INFINITY;
+  const pw_real speed = k > 0 ? (r / before) * (r / before) : loosest;
+  const pw_real enough = 0.1 * pw_max(tolerance, n->floor) / r;
+  pw_solver_aim(n->solver, pw_max(tightest, pw_max(enough, pw_min(speed, loosest))));
+}
+
+/* Solve for the correction of the right-hand side. */
+static pw_status solve(pw_newton *n)
+{
+  const pw_tet_model *m = n->model;
+  if (m->csr.n == 0) {
+    return PW_OK;
+  }
+  PW_TRY(pw_solver_factor(n->solver, &m->csr));
+  return pw_solver_solve(n->solver, &m->csr, n->right, n->delta);
+}
+
+/* u += part of the correction */
+static void add_correction(pw_newton *n, pw_real part)
+{
+  const pw_tet_model *m = n->model;
+  for (size_t i = 0; i < n->dofs; i++) {
+    n->u[i] += m->equation[i] >= 0 ? part * n->delta[m->equation[i]] : 0.0;
+  }
+}
+
+static void prescribe(pw_newton *n)
+{
+  const pw_tet_model *m = n->model;
+  for (size_t i = 0; i < n->dofs; i++) {
+    n->u[i] = m->fixed[i] ? m->prescribed[i] : n->u[i];
+  }
+}
+
+/* First guess from the tangent at the start: free nodes follow the prescribed ones linearly. */
+static pw_status predict(pw_newton *n)
+{
+  const pw_tet_model *m = n->model;
+  residual(n);
+  for (size_t i = 0; i < n->dofs; i++) {
+    if (m->equation[i] >= 0) {
+      n->right[m->equation[i]] -= m->lift[i];
+    }
+  }
+  pw_solver_aim(n->solver, loosest);
+  PW_TRY(solve(n));
+  add_correction(n, 1.0);
+  prescribe(n);
+  return PW_OK;
+}
+
+/* R0 from the forces at u = 0, known from the last evaluation; loads are taken to grow from their
+ * values at t0. Leaves the loads of t0 behind. */
+static void find_rest(pw_newton *n, const pw_newton_load *load, pw_real t0)
+{
+  pw_tet_model *m = n->model;
+  load->apply(load->ctx, m, t0, t0);
+  for (size_t i = 0; i < n->dofs; i++) {
+    n->rest[i] = m->equation[i] >= 0 ? m->force[i] - m->external[i] : 0.0;
+  }
+  n->has_rest = true;
+}
+
+/* Loads at t1, and the part of R0 that stays until then. */
+static void set_loads(pw_newton *n, const pw_newton_load *load, pw_real t0, pw_real t1)
+{
+  const pw_real kept = t1 >= 1.0 ? 0.0 : 1.0 - (t1 - t0) / (1.0 - t0);
+  load->apply(load->ctx, n->model, t0, t1);
+  for (size_t i = 0; i < n->dofs; i++) {
+    n->unbalanced[i] = n->has_rest ? kept * n->rest[i] : 0.0;
+  }
+}
+
+/* Dynamics: nodes go on as they move. */
+static pw_status start_moving(pw_newton *n, const pw_newton_load *load, const pw_real *t)
+{
+  pw_tet_model *m = n->model;
+  const pw_real dt = m->dt;
+  pw_tet_rates_start(m, &n->rates);
+  if (!n->rates.begun) {
+    load->apply(load->ctx, m, t[0], t[0]);
+    PW_TRY(evaluate(n, false));
+    pw_tet_rates_balance(m, &n->rates);
+  }
+  set_loads(n, load, t[0], t[1]);
+  for (size_t i = 0; i < n->dofs; i++) {
+    const pw_real far = dt * (n->rates.v0[i] + 0.5 * dt * n->rates.a0[i]);
+    n->u[i] = m->equation[i] >= 0 ? far : 0.0;
+  }
+  prescribe(n);
+  return PW_OK;
+}
+
+/* First guess. Where the part is not the rest of the step, or nothing better is known, the forces
+ * and the tangent at the start are needed. */
+static pw_status start_part(pw_newton *n, const pw_newton_load *load, const pw_real *t)
+{
+  pw_tet_model *m = n->model;
+  const bool whole = t[1] >= 1.0, guess = n->options.from_previous && n->has_previous;
+  const pw_real step = load->step_s > 0.0 ? load->step_s : 1.0;
+  memset(n->u, 0, n->dofs * sizeof *n->u);
+  n->has_rest = false;
+  m->dt = (t[1] - t[0]) * step;
+  m->time = load->start_s + t[0] * step;
+  if (dynamic(n)) {
+    return start_moving(n, load, t);
+  }
+  set_loads(n, load, t[0], t[1]);
+  if (!whole || !guess) {
+    PW_TRY(evaluate(n, !guess));
+  }
+  if (!whole) {
+    find_rest(n, load, t[0]);
+    set_loads(n, load, t[0], t[1]);
+  }
+  if (!guess) {
+    return predict(n);
+  }
+  for (size_t i = 0; i < n->dofs; i++) {
+    n->u[i] = m->equation[i] >= 0 ? (t[1] - t[0]) * n->previous[i] : 0.0;
+  }
+  prescribe(n);
+  return PW_OK;
+}
+
+/* Add the correction, all of it or, in a line search, the largest half, quarter ... that leaves less
+ * than there was and turns no element inside out; the residual after it. */
+static pw_status advance(pw_newton *n, pw_real before, pw_real *after, pw_newton_report *report)
+{
+  pw_real part = 1.0;
+  for (int k = 0; k < n->options.line_search; k++, part *= 0.5, report->searches++) {
+    memcpy(n->tried, n->u, n->dofs * sizeof *n->u);
+    add_correction(n, part);
+    const pw_status s = evaluate(n, true);
+    if (s < 0) {
+      return s;
+    }
+    if (s == PW_OK) {
+      *after = residual(n);
+      if (*after <= pw_max(sufficient * before, n->floor)) {
+        return PW_OK;
+      }
+    }
+    memcpy(n->u, n->tried, n->dofs * sizeof *n->u);
+  }
+  add_correction(n, part);
+  PW_TRY(evaluate(n, true));
+  *after = residual(n);
+  return PW_OK;
+}
+
+/* Newton's method from the u at hand. */
+static pw_status iterate(pw_newton *n, pw_real tolerance, pw_newton_report *report)
+{
+  pw_real r;
+  report->count = 0;
+  PW_TRY(evaluate(n, true));
+  r = residual(n);
+  for (;;) {
+    report->residual[report->count++] = r;
+    if (r <= pw_max(tolerance, n->floor)) {
+      return PW_OK;
+    }
+    PW_REQUIRE(r <= hopeless * report->residual[0] && report->count < n->options.max_iterations,
+               PW_RETRY_DIVERGED, "the residual is %g after %d iterations", r, report->count - 1);
+    report->iterations++;
+    aim(n, tolerance, report);
+    PW_TRY(solve(n));
+    PW_TRY(advance(n, r, &r, report));
+  }
+}
+
+/* Solve for the part s of the load of t, from the solution for the part `done` of it in n->way. */
+static pw_status try_part(pw_newton *n, const pw_newton_load *load, const pw_real *t, pw_real done,
+                          pw_real s, pw_newton_report *report)
+{
+  const pw_real to = s < 1.0 ? t[0] + s * (t[1] - t[0]) : t[1];
+  n->model->dt = (to - t[0]) * (load->step_s > 0.0 ? load->step_s : 1.0);
+  set_loads(n, load, t[0], to);
+  if (done > 0.0) {
+    for (size_t i = 0; i < n->dofs; i++) {
+      n->u[i] = s / done * n->way[i];
+    }
+    prescribe(n);
+  } else {
+    memset(n->u, 0, n->dofs * sizeof *n->u);
+    PW_TRY(evaluate(n, true));
+    PW_TRY(predict(n));
+  }
+  return iterate(n, s < 1.0 ? on_the_way : n->options.tolerance, report);
+}
+
+static pw_status approach(pw_newton *n, const pw_newton_load *load, const pw_real *t,
+                          pw_newton_report *report)
+{
+  const pw_real least = ldexp(1.0, -n->options.approach);
+  pw_real done = 0.0, size = 0.5;
+  if (!n->has_rest) {
+    memset(n->u, 0, n->dofs * sizeof *n->u);
+    PW_TRY(evaluate(n, false));
+    find_rest(n, load, t[0]);
+  }
+  report->approaches++;
+  while (done < 1.0) {
+    const pw_real s = pw_min(done + size, 1.0); /* sums of powers of 1/2 are exact */
+    const pw_status status = try_part(n, load, t, done, s, report);
+    if (status == PW_OK) {
+      memcpy(n->way, n->u, n->dofs * sizeof *n->way);
+      done = s;
+      size *= 2.0;
+    } else if (status < 0 || 0.5 * size < least) {
+      return status;
+    } else {
+      size *= 0.5;
+    }
+  }
+  return PW_OK;
+}
+
+/* A solution of another branch, with elements near collapse, is none. */
+static pw_status check_volumes(const pw_newton *n)
+{
+  const pw_real limit = n->options.volume_limit;
+  pw_real ratio[2];
+  pw_tet_model_volumes(n->model, n->u, ratio);
+  PW_REQUIRE(ratio[0] * limit >= 1.0 && ratio[1] <= limit, PW_RETRY_DOMAIN_INVERTED,
+             "volumes of elements change by factors from %g to %g", ratio[0], ratio[1]);
+  return PW_OK;
+}
+
+static pw_status solve_in_one(pw_newton *n, const pw_newton_load *load, const pw_real *t,
+                              pw_newton_report *report)
+{
+  PW_TRY(start_part(n, load, t));
+  PW_TRY(iterate(n, n->options.tolerance, report));
+  return check_volumes(n);
+}
+
+pw_status pw_newton_solve_part(pw_newton *n, const pw_newton_load *load, const pw_real *t,
+                               pw_newton_report *report)
+{
+  report->count = 0;
+  const pw_status s = solve_in_one(n, load, t, report);
+  if (s <= 0 || n->options.approach == 0 || dynamic(n)) {
+    return s;
+  }
+  PW_TRY(approach(n, load, t, report));
+  return check_volumes(n);
+}

@@ -1,0 +1,18 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/**
+ * @file io/solid_mesh.h
+ * @brief The mesh a solid scene names: a box, a mesh file, or a geometry that gmsh meshes (layer 4).
+ */
+#ifndef PW_IO_SOLID_MESH_H
+#define PW_IO_SOLID_MESH_H
+
+#include "engine/solid_mesh.h"
+
+/**
+ * @brief Make or read the mesh of a scene.
+ * @return PW_OK; as pw_gmsh_read() and pw_gmsh_make(), PW_ERR_FILE becoming PW_ERR_SCENE and the
+ *         text beginning with "mesh.file"; PW_ERR_MEMORY.
+ */
+pw_status pw_solid_mesh_load(const pw_scene *scene, pw_solid_mesh *out);
+
+#endif /* PW_IO_SOLID_MESH_H */

@@ -1,0 +1,35 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Strip footing on weightless soil in plane strain (tests/limit_problems.h): with F-bar it bears
+ * (2 + pi) c_u within 3 % from above (Prandtl 1920), c_u the yield stress over sqrt(3); without F-bar
+ * linear tetrahedra lock and the load rises on. */
+#include "tests/harness.h"
+#include "tests/limit_problems.h"
+
+static limit_result run(pw_fbar fbar)
+{
+  limit_case c = limit_footing_case(1, fbar);
+  limit_result r;
+  assert_ok(limit_strip_run(limit_footing_start, &c, 1.25e-5, 10, &r));
+  print_message("%d tets, F-bar %d: load/limit %.4f, slope %.4f of the first\n", (int)r.tets,
+                (int)fbar, r.load, r.slope);
+  assert_int_equal(r.crossed, 0); /* the limit is reached before points cross */
+  return r;
+}
+
+static void footing_bears_five_point_one_four(void **state)
+{
+  (void)state;
+  limit_result barred = run(PW_FBAR_INCREMENT), plain = run(PW_FBAR_NONE);
+  assert_near(barred.load, 1.0, 0.03);
+  assert_true(barred.load > 1.0 && barred.slope < 0.01);
+  assert_int_equal(barred.cuts, 0);
+  assert_true(plain.load > 1.15 && plain.slope > 0.02);
+}
+
+int main(void)
+{
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(footing_bears_five_point_one_four),
+  };
+  return cmocka_run_group_tests(tests, NULL, NULL);
+}
