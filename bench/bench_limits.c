@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Plastic limit loads in plane strain on finer meshes (tests/limit_problems.h,
  * tests/thick_wall_helpers.h): every step's figure.
- * usage: bench_limits footing|rough_footing|notch|cylinder|sphere LEVEL [none|increment|total] [THREADS]
+ * usage: bench_limits footing|rough_footing|notch|cylinder|sphere LEVEL [none|increment|total]
+ *        bench_limits cavity|spherical_cavity G/c_u [none|increment|total]
  * LEVEL: bricks along each axis, times those of the tests. */
 #include <omp.h>
 #include <stdio.h>
@@ -83,12 +84,29 @@ static int wall(const wall_case *c, double push, int steps)
   return 0;
 }
 
+static int cavity(bool sphere, double rigidity, pw_fbar fbar)
+{
+  static solid s;
+  const wall_case c = wall_cavity(sphere, rigidity, fbar);
+  const double factor = sphere ? 4.0 / 3.0 : 1.0, exact = factor * (1.0 + log(rigidity));
+  double doubled;
+  if (wall_double(&s, &c, &doubled) != PW_OK) {
+    return fail("step");
+  }
+  const double limit = doubled + factor * log(2.0);
+  printf(
+      "%.4f c_u at twice the volume, limit %.4f c_u, exact %.4f (%.4f), %d iterations, %d tets\n",
+      doubled, limit, exact, limit / exact, s.report.iterations, (int)s.mesh.tets.nelem);
+  solid_end(&s);
+  return 0;
+}
+
 int main(int argc, char **argv)
 {
   const int level = argc > 2 ? atoi(argv[2]) : 0;
   if (level < 1) {
     fprintf(stderr, "usage: bench_limits footing|rough_footing|notch|cylinder|sphere LEVEL "
-                    "[none|increment|total]\n");
+                    "[none|increment|total], or cavity|spherical_cavity G/c_u\n");
     return 2;
   }
   const char *name = argc > 3 ? argv[3] : "increment";
@@ -101,6 +119,9 @@ int main(int argc, char **argv)
     const double stiffer = argc > 4 ? atof(argv[4]) : 1.0;
     w.young *= stiffer;
     return wall(&w, (w.sphere ? 0.025e-3 : 0.035e-3) / stiffer, w.sphere ? 24 : 20);
+  }
+  if (strstr(argv[1], "cavity")) {
+    return cavity(argv[1][0] == 's', level, c.fbar);
   }
   if (strcmp(argv[1], "notch") == 0) {
     c = limit_notch_case(level, c.fbar);

@@ -6,6 +6,7 @@
 #include <sys/resource.h>
 #include <time.h>
 
+#include "partition/share.h"
 #include "tests/vane_helpers.h"
 
 static int fail(const char *what)
@@ -142,6 +143,10 @@ int main(int argc, char **argv)
     return fail("step");
   }
   printf("%.2f s wall, %.2f s cpu for all steps\n", since(from).wall, since(from).cpu);
+  pw_real coloured, plain;
+  pw_share_bound(&v.model.blocks, v.model.threads, &coloured, &plain);
+  printf("blocks bound the speed-up on %d threads by %.3f coloured, %.3f in any order\n",
+         v.model.threads, coloured, plain);
   time_parts(&v, engine == PW_SOLVER_AUTO ? PW_SOLVER_DIRECT : engine);
   struct rusage use;
   getrusage(RUSAGE_SELF, &use);

@@ -188,9 +188,10 @@ void pw_csr_number(pw_csr *m, const pw_idx *equation, pw_idx n)
   m->start[n] = at;
 }
 
-void pw_csr_clear(pw_csr *m)
+void pw_csr_clear(pw_csr *m, int part, int parts)
 {
-  memset(m->value, 0, (size_t)m->start[m->n] * sizeof *m->value);
+  const pw_off first = m->start[m->n] * part / parts, end = m->start[m->n] * (part + 1) / parts;
+  memset(m->value + first, 0, (size_t)(end - first) * sizeof *m->value);
 }
 
 void pw_csr_add(pw_csr *m, pw_idx patch, const pw_real *k)

@@ -57,8 +57,8 @@ void pw_csr_destroy(pw_csr *m);
  */
 void pw_csr_number(pw_csr *m, const pw_idx *equation, pw_idx n);
 
-/** @brief Set all values to zero. */
-void pw_csr_clear(pw_csr *m);
+/** @brief Set part @p part of @p parts of the values to zero. */
+void pw_csr_clear(pw_csr *m, int part, int parts);
 
 /**
  * @brief Add the matrix of a patch; rows and columns without equation are left out.

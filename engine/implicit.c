@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "engine/implicit.h"
 
+#include <math.h>
 #include <omp.h>
 #include <stdio.h>
 #include <string.h>
@@ -8,6 +9,7 @@
 #include "engine/core/mem.h"
 #include "engine/effects/solid_params.h"
 #include "engine/newton_archive.h"
+#include "kernels/tensor.h"
 
 /* ---- creation ---- */
 
@@ -85,6 +87,7 @@ static pw_status create_model(pw_implicit *sim, const pw_idx *body, int threads)
   options.from_previous = p->from_previous;
   options.approach = p->approach;
   options.line_search = p->line_search;
+  options.cut_driven = p->cut_driven;
   options.mechanisms = (pw_mechanisms)p->mechanisms;
   options.solver = (pw_solver_engine)p->solver;
   return pw_newton_create(&sim->model, &options, &sim->newton);
@@ -145,6 +148,7 @@ pw_status pw_implicit_create(const pw_scene *scene, const pw_solid_mesh *mesh, i
   PW_TRY(pw_mem_alloc("implicit simulation", 1, sizeof *sim, &sim));
   sim->scene = *scene;
   pw_scene_solid_times(&sim->scene);
+  sim->wanted = 1.0;
   pw_status s = build(sim, mesh, threads > 0 ? threads : omp_get_max_threads());
   if (s != PW_OK) {
     pw_implicit_destroy(&sim);
@@ -177,13 +181,13 @@ static void apply(void *ctx, pw_tet_model *m, pw_real t0, pw_real t1)
 {
   pw_implicit *sim = ctx;
   const size_t bytes = 3 * (size_t)m->mesh->tets.nnode * sizeof(pw_real);
-  const pw_real made = (pw_real)sim->step;
+  const pw_real start = sim->now, size = sim->size;
   memset(m->prescribed, 0, bytes);
   memset(m->external, 0, bytes);
   for (int k = 0; k < sim->neffect; k++) {
     const pw_solid_hooks *hooks = sim->effect[k].type->solid;
     if (hooks->apply) {
-      hooks->apply(sim, sim->effect[k].ctx, made + t0, made + t1);
+      hooks->apply(sim, sim->effect[k].ctx, start + size * t0, start + size * t1);
     }
   }
 }
@@ -192,7 +196,7 @@ static void converged(void *ctx, pw_tet_model *m, pw_real t1)
 {
   pw_implicit *sim = ctx;
   const pw_walk_counts *w = &m->walked;
-  const pw_real to = (pw_real)sim->step + t1;
+  const pw_real to = sim->now + sim->size * t1;
   sim->equations = m->csr.n;
   sim->walked.points += w->points;
   sim->walked.tests += w->tests;
@@ -210,7 +214,7 @@ static void converged(void *ctx, pw_tet_model *m, pw_real t1)
 static pw_status move(void *ctx, pw_tet_model *m, pw_real t1)
 {
   pw_implicit *sim = ctx;
-  const pw_real to = (pw_real)sim->step + t1;
+  const pw_real to = sim->now + sim->size * t1;
   (void)m;
   for (int k = 0; k < sim->neffect; k++) {
     const pw_solid_hooks *hooks = sim->effect[k].type->solid;
@@ -242,12 +246,46 @@ const char *pw_implicit_warning(const pw_implicit *sim, int i)
   return i == 0 && sim->warning[0] ? sim->warning : NULL;
 }
 
-pw_status pw_implicit_step(pw_implicit *sim)
+/* Length of the next step in load steps: one, or as the iterations before suggest, and what is left
+ * to @p limit where that is less. */
+static pw_real choose_size(const pw_implicit *sim, pw_real limit)
 {
-  const pw_real start = omp_get_wtime(), length = sim->scene.solid.implicit.step_s;
+  const pw_real left = limit > 0.0 ? limit : sim->scene.solid.implicit.steps - sim->now;
+  const pw_real wanted = sim->scene.solid.implicit.adaptive ? sim->wanted : 1.0;
+  return wanted > (1.0 - 1e-9) * left ? left : wanted;
+}
+
+/* Steps that were easy make the next one longer; those cut short for an output tell nothing. */
+static void choose_next(pw_implicit *sim)
+{
+  const pw_scene_implicit *p = &sim->scene.solid.implicit;
+  const pw_newton_course course = {.least = p->step_least,
+                                   .most = p->step_most,
+                                   .easy = p->easy_iterations,
+                                   .hard = p->hard_iterations,
+                                   .grow = 1.5,
+                                   .shrink = 0.5};
+  const bool whole = sim->size >= (1.0 - 1e-9) * sim->wanted;
+  const pw_real next = pw_newton_next_size(&course, sim->size, &sim->report);
+  if (whole || next < sim->size) {
+    sim->wanted = next;
+  }
+}
+
+/* Whole load steps are counted exactly. */
+static pw_real snapped(pw_real t)
+{
+  return fabs(t - round(t)) < 1e-9 ? round(t) : t;
+}
+
+pw_status pw_implicit_advance(pw_implicit *sim, pw_real limit_s)
+{
+  const pw_scene_implicit *p = &sim->scene.solid.implicit;
+  const pw_real start = omp_get_wtime();
+  sim->size = choose_size(sim, p->adaptive ? limit_s / p->step_s : 1.0);
   pw_newton_load load = {.ctx = sim,
-                         .start_s = length * (pw_real)sim->step,
-                         .step_s = length,
+                         .start_s = p->step_s * sim->now,
+                         .step_s = p->step_s * sim->size,
                          .apply = apply,
                          .converged = converged,
                          .move = sim->mesh_moves ? move : NULL};
@@ -256,17 +294,26 @@ pw_status pw_implicit_step(pw_implicit *sim)
   sim->iterations += sim->report.iterations;
   sim->cuts += sim->report.cuts;
   sim->parts += sim->report.parts;
-  sim->step += s == PW_OK;
+  if (s == PW_OK) {
+    sim->step++;
+    sim->now = snapped(sim->now + sim->size);
+    choose_next(sim);
+  }
   note_mechanisms(sim);
   sim->wall += omp_get_wtime() - start;
   return s;
+}
+
+pw_status pw_implicit_step(pw_implicit *sim)
+{
+  return pw_implicit_advance(sim, 0.0);
 }
 
 /* ---- reading ---- */
 
 pw_real pw_implicit_time(const pw_implicit *sim)
 {
-  return sim->scene.solid.implicit.step_s * (pw_real)sim->step;
+  return sim->scene.solid.implicit.step_s * sim->now;
 }
 
 pw_off pw_implicit_steps(const pw_implicit *sim)
@@ -372,6 +419,18 @@ void pw_implicit_results(const pw_implicit *sim, pw_record *out)
       results(sim, sim->effect[k].ctx, out);
     }
   }
+}
+
+pw_real pw_tet_points_mean_stress(const pw_tet_points *p, pw_idx point)
+{
+  return pw_t6_trace(pw_t6_load(p->stress + point, (size_t)p->ld)) / 3.0;
+}
+
+pw_real pw_tet_points_von_mises(const pw_tet_points *p, pw_idx point)
+{
+  const pw_t6 s = pw_t6_load(p->stress + point, (size_t)p->ld);
+  const pw_t6 d = pw_t6_shift(s, -pw_t6_trace(s) / 3.0);
+  return sqrt(1.5 * pw_t6_dot(d, d));
 }
 
 /* ---- for effects ---- */

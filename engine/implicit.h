@@ -7,7 +7,7 @@
  *     pw_solid_mesh mesh = {0};                        // pw_solid_mesh_load() of io/solid_mesh.h
  *     pw_implicit *sim = NULL;
  *     pw_status s = pw_implicit_create(&scene, &mesh, 0, &sim);
- *     while (s == PW_OK && pw_implicit_steps(sim) < scene.solid.implicit.steps) {
+ *     while (s == PW_OK && pw_implicit_time(sim) < pw_implicit_scene(sim)->time.end_s) {
  *       s = pw_implicit_step(sim);
  *     }
  *
@@ -56,10 +56,14 @@ pw_status pw_implicit_create(const pw_scene *scene, const pw_solid_mesh *mesh, i
 void pw_implicit_destroy(pw_implicit **sim);
 
 /**
- * @brief One load step.
+ * @brief One load step; of an adaptive scene a step of its own length, which ends @p limit_s (0: the
+ *        end of the run) from now at the latest.
  * @return PW_OK; PW_RETRY_DIVERGED with the residuals in the error text, PW_ERR_POINT_LOST and the
  *         like: the state is then not that of the end of a step and not to be continued.
  */
+pw_status pw_implicit_advance(pw_implicit *sim, pw_real limit_s);
+
+/** @brief The same without a limit. @return likewise. */
 pw_status pw_implicit_step(pw_implicit *sim);
 
 pw_real pw_implicit_time(const pw_implicit *sim);
@@ -81,6 +85,12 @@ void pw_implicit_history(const pw_implicit *sim, pw_record *row);
 
 /** @brief Items of summary.json's `results`. */
 void pw_implicit_results(const pw_implicit *sim, pw_record *out);
+
+/** @brief Mean of the normal Cauchy stresses of a point; Pa. */
+pw_real pw_tet_points_mean_stress(const pw_tet_points *p, pw_idx point);
+
+/** @brief Von Mises stress sqrt(3 J2) of a point, of its Cauchy stress; Pa. */
+pw_real pw_tet_points_von_mises(const pw_tet_points *p, pw_idx point);
 
 /** @brief Things noticed so far that a person should know. @return the @p i-th, NULL past the last;
  *  owned by the simulation. */

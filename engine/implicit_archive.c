@@ -91,11 +91,14 @@ static pw_status archive_counts(pw_implicit *sim, pw_archive *ar)
   sim->report.iterations = (int)report[0];
   sim->report.cuts = (int)report[1];
   sim->report.parts = (int)report[2];
-  pw_real residual = sim->report.count > 0 ? sim->report.residual[sim->report.count - 1] : 0.0;
-  PW_TRY(ar->real(ar, "implicit/residual", &residual, 1));
+  pw_real number[3] = {sim->now, sim->wanted, 0.0};
+  number[2] = sim->report.count > 0 ? sim->report.residual[sim->report.count - 1] : 0.0;
+  PW_TRY(ar->real(ar, "implicit/numbers", number, 3));
   if (ar->loading) {
+    sim->now = number[0];
+    sim->wanted = number[1];
     sim->report.count = 1;
-    sim->report.residual[0] = residual;
+    sim->report.residual[0] = number[2];
   }
   return PW_OK;
 }
@@ -106,7 +109,7 @@ static pw_status place_mesh(pw_implicit *sim)
   for (int k = 0; k < sim->neffect && sim->step > 0; k++) {
     const pw_solid_hooks *hooks = sim->effect[k].type->solid;
     if (hooks->mesh) {
-      PW_TRY(hooks->mesh(sim, sim->effect[k].ctx, (pw_real)sim->step));
+      PW_TRY(hooks->mesh(sim, sim->effect[k].ctx, sim->now));
     }
   }
   return PW_OK;

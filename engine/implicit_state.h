@@ -53,6 +53,9 @@ struct pw_implicit {
   pw_newton *newton;
   pw_newton_report report; /**< of the last load step */
   pw_off step;
+  pw_real now;    /**< T: load steps made, whole or not */
+  pw_real size;   /**< of the step at hand, in load steps */
+  pw_real wanted; /**< of the next one, adaptive */
   pw_off iterations, cuts, parts;
   pw_walk_counts walked;
   pw_off equations; /**< of the last part */

@@ -1,6 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "engine/rates.h"
 
+#include <string.h>
+
 #include "engine/assemble.h"
 #include "engine/core/mem.h"
 #include "engine/fbar.h"
@@ -14,9 +16,23 @@ enum { REBALANCE = 16 };
 /* A block rises by a level when its longer step would keep this part of the margin. */
 static const pw_real RISE = 0.95;
 
+/* The steps of level 1 change when that leaves less than this part of the updates. */
+static const pw_real STAY = 0.95;
+
+/* Short steps in one of a level, when level 1 takes @p first of them. */
+static pw_idx steps_of(pw_idx first, pw_idx level)
+{
+  return level > 0 ? first << (level - 1) : 1;
+}
+
 int pw_rates_cycle(const pw_sim *sim)
 {
-  return sim->rates ? 1 << sim->rates->levels : 1;
+  const pw_rates *r = sim->rates;
+  pw_idx highest = 0;
+  for (pw_idx k = 0; r && k < sim->blocks.nblock; k++) {
+    highest = r->level[k] > highest ? r->level[k] : highest;
+  }
+  return r ? steps_of(r->first, highest) : 1;
 }
 
 pw_status pw_rates_create(pw_sim *sim)
@@ -28,9 +44,11 @@ pw_status pw_rates_create(pw_sim *sim)
   while ((2 << r->levels) <= sim->scene.method.step_ratio_max && r->levels < PW_MAX_LEVELS) {
     r->levels++;
   }
+  r->first = 2;
   r->begun = r->done = r->levels;
   r->done_below = -1;
   PW_TRY(pw_mem_alloc("rates: levels", nblock, sizeof *r->level, &r->level));
+  PW_TRY(pw_mem_alloc("rates: next levels", nblock, sizeof *r->next, &r->next));
   PW_TRY(pw_mem_alloc("rates: pinned", nblock, sizeof *r->pinned, &r->pinned));
   for (int l = 0; l <= r->levels; l++) {
     if (l > 0) {
@@ -56,6 +74,7 @@ void pw_rates_destroy(pw_sim *sim)
       pw_share_destroy(&r->set[l]);
     }
     pw_mem_free(&r->level);
+    pw_mem_free(&r->next);
     pw_mem_free(&r->pinned);
   }
   pw_mem_free(&sim->rates);
@@ -89,11 +108,11 @@ void pw_rates_renew(pw_sim *sim)
   divide(sim);
 }
 
-/* Highest level that ends with short step k of n, or with step k - 1 when it is about to start. */
+/* Highest level whose steps end after k short ones of a cycle. */
 static int level_at(const pw_rates *r, int k)
 {
   int l = 0;
-  while (l < r->levels && k % (2 << l) == 0) {
+  while (l < r->levels && k % steps_of(r->first, l + 1) == 0) {
     l++;
   }
   return l;
@@ -245,25 +264,62 @@ static pw_real signal_rate(const pw_sim *sim, pw_idx block)
   return sim->mesh.graded ? s->rate_max : s->speed_max / sim->mesh.cell;
 }
 
+/* Highest level that a block may take when level 1 has @p first short steps. */
+static pw_idx level_for(const pw_sim *sim, pw_idx block, pw_idx first)
+{
+  const pw_rates *r = sim->rates;
+  const pw_real rate = signal_rate(sim, block);
+  const pw_idx now = steps_of(r->first, r->level[block]);
+  pw_idx level = 0;
+  while (level < r->levels && !r->pinned[block]) {
+    const pw_idx steps = steps_of(first, level + 1);
+    const pw_real step = sim->dt_next * (pw_real)steps, part = steps <= now ? 1.0 : RISE;
+    if (steps > sim->scene.method.step_ratio_max || step > sim->scene.time.dt_max_s ||
+        step * rate > part * sim->scene.time.cfl) {
+      break;
+    }
+    level++;
+  }
+  return level;
+}
+
+/* Updates of points in a short step, in the mean over a cycle. */
+static pw_real updates_for(const pw_sim *sim, pw_idx first)
+{
+  pw_real sum = 0.0;
+  for (pw_idx k = 0; k < sim->blocks.nblock; k++) {
+    sum += (pw_real)sim->blocks.share_size[k] / (pw_real)steps_of(first, level_for(sim, k, first));
+  }
+  return sum;
+}
+
+/* Steps of level 1 with the fewest updates. */
+static pw_idx choose_first(const pw_sim *sim)
+{
+  pw_idx first = sim->rates->first;
+  pw_real least = STAY * updates_for(sim, first);
+  for (pw_idx q = 2; q <= 4; q++) {
+    pw_real updates = updates_for(sim, q);
+    if (updates < least) {
+      first = q;
+      least = updates;
+    }
+  }
+  return first;
+}
+
 void pw_rates_choose(pw_sim *sim)
 {
   pw_rates *r = sim->rates;
-  bool changed = false;
-  for (pw_idx k = 0; k < sim->blocks.nblock; k++) {
-    pw_idx level = 0;
-    const pw_real rate = signal_rate(sim, k), most = sim->scene.time.dt_max_s;
-    while (level < r->levels && !r->pinned[k]) {
-      pw_real step = sim->dt_next * (pw_real)(2 << level);
-      pw_real part = level < r->level[k] ? 1.0 : RISE;
-      if (step * rate > part * sim->scene.time.cfl || step > most) {
-        break;
-      }
-      level++;
-    }
-    changed = changed || level != r->level[k];
-    r->level[k] = level;
-    r->pinned[k] = false;
+  const pw_idx nblock = sim->blocks.nblock, first = choose_first(sim);
+  bool changed = first != r->first;
+  for (pw_idx k = 0; k < nblock; k++) {
+    r->next[k] = level_for(sim, k, first);
+    changed = changed || r->next[k] != r->level[k];
   }
+  memcpy(r->level, r->next, (size_t)nblock * sizeof *r->level);
+  memset(r->pinned, 0, (size_t)nblock * sizeof *r->pinned);
+  r->first = first;
   if (changed) {
     pw_rates_renew(sim);
   } else if (++r->cycles >= REBALANCE) {
@@ -274,5 +330,9 @@ void pw_rates_choose(pw_sim *sim)
 
 pw_status pw_rates_archive(pw_sim *sim, pw_archive *ar)
 {
-  return sim->rates ? ar->index(ar, "rates/level", sim->rates->level, sim->blocks.nblock) : PW_OK;
+  if (!sim->rates) {
+    return PW_OK;
+  }
+  PW_TRY(ar->index(ar, "rates/first", &sim->rates->first, 1));
+  return ar->index(ar, "rates/level", sim->rates->level, sim->blocks.nblock);
 }

@@ -4,7 +4,8 @@
  * @brief Blocks of slow points take longer steps (method.step_ratio_max; layer 3).
  *
  * The stable step is that of the few points where signals are fastest and cells smallest. A block
- * of level l takes one step of 2^l of the short ones. In a cycle of short steps
+ * of level l > 0 takes one step of q 2^(l - 1) of the short ones, with q = 2, 3 or 4, whichever
+ * leaves the fewest updates of points. In a cycle of short steps
  *
  *  - a block scatters mass, momentum and force at the start of its own step. What the blocks of a
  *    level gave to the grid is held in records of that level and added to the nodes in each short
@@ -13,7 +14,7 @@
  *    conserves momentum exactly, and move and strain with the node's velocity as it then is times
  *    their own step. For a node that only such points reach this is the long step itself, to
  *    rounding. A chain of fast and slow springs stays stable up to 0.6 of both limits, with narrow
- *    resonances above (counted for 2, 4 and 8 steps), whereas with the displacement summed over the
+ *    resonances above (for 2, 3, 4, 6 and 8 steps), whereas with the displacement summed over the
  *    short steps, or with stress that is updated every few steps only, its force lags and it grows
  *    by 1 to 20 % in each long step. In an elastic bar of points the energy grows by 3 % in 12,000
  *    short steps at cfl 0.5; in twos it grows less, in fours and eights by 11 %; not at cfl 0.25;
@@ -32,8 +33,10 @@ enum { PW_MAX_LEVELS = 4 };
 
 /** Context; sim->rates points to it. */
 typedef struct pw_rates {
-  int levels;    /**< highest level */
+  int levels;    /**< highest level there is room for */
+  pw_idx first;  /**< short steps of level 1; each further level takes twice as many */
   pw_idx *level; /**< [nblock] */
+  pw_idx *next;  /**< [nblock] scratch: levels to come */
   bool *pinned;  /**< [nblock] set by contacts in each step: short steps next time */
   pw_nodes held[PW_MAX_LEVELS + 1]; /**< by level from 1 on: what its blocks gave to the grid */
   pw_blocks set[PW_MAX_LEVELS + 1]; /**< blocks of levels up to this, divided among threads;
@@ -50,7 +53,8 @@ typedef struct pw_rates {
 pw_status pw_rates_create(pw_sim *sim);
 void pw_rates_destroy(pw_sim *sim);
 
-/** @brief Short steps of a full cycle; 1 without levels. */
+/** @brief Short steps of a full cycle, which are those of the highest level in use; 1 without
+ *  levels. */
 int pw_rates_cycle(const pw_sim *sim);
 
 /** @brief Before short step @p k of a cycle of @p n. */
@@ -66,7 +70,7 @@ void pw_rates_choose(pw_sim *sim);
 /** @brief After a sort, a change of levels, or loading. */
 void pw_rates_renew(pw_sim *sim);
 
-/** @brief Save or load the levels. */
+/** @brief Save or load the levels and their steps. */
 pw_status pw_rates_archive(pw_sim *sim, pw_archive *ar);
 
 /** @brief Blocks that start, or end, their steps in this one. */

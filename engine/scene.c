@@ -68,7 +68,7 @@ const pw_key pw_scene_keys_method[] = {
   {"noise_damping_per_s", PW_KEY_REAL, AT(method.noise_damping_per_s), 0, 1e6, "0", NULL, NULL,
    "rate at which velocities of points that the grid does not see die out (a share of PIC)"},
   {"step_ratio_max", PW_KEY_INT, AT(method.step_ratio_max), 1, 16, "1", NULL, NULL,
-   "most short steps that blocks of slow points take at once, a power of two; 1: all step together"},
+   "most short steps that blocks of slow points take at once; 1: all step together"},
   {"block_elements", PW_KEY_INT, AT(method.block_elements), 0, 1e6, "0", NULL, NULL,
    "elements in a block of the coloured scatter; 0: chosen from the grid"},
   {0}};

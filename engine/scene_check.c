@@ -64,8 +64,6 @@ pw_status pw_scene_check_time(const pw_scene *s)
 pw_status pw_scene_check_method(const pw_scene *s)
 {
   const int ratio = s->method.step_ratio_max;
-  PW_REQUIRE((ratio & (ratio - 1)) == 0, PW_ERR_SCENE,
-             "step_ratio_max = %d must be a power of two: 1, 2, 4, 8 or 16", ratio);
   PW_REQUIRE(ratio <= 1 || s->method.update == PW_MUSL, PW_ERR_SCENE,
              "step_ratio_max = %d needs update: musl", ratio);
   for (int e = 0; ratio > 1 && e < s->neffect; e++) {

@@ -64,10 +64,11 @@ static void hash_grid(uint64_t *hash, const pw_scene *s)
 static void hash_implicit(uint64_t *hash, const pw_scene_implicit *p)
 {
   const int choice[] = {
-      p->steps,          p->fbar,     p->point_rule,    p->points_per, p->negative_volumes,
-      p->max_iterations, p->max_cuts, p->from_previous, p->approach,   p->line_search,
-      p->mechanisms,     p->solver};
-  const pw_real number[] = {p->step_s, p->tolerance};
+      p->steps,          p->fbar,     p->point_rule,    p->points_per,      p->negative_volumes,
+      p->max_iterations, p->max_cuts, p->from_previous, p->approach,        p->line_search,
+      p->mechanisms,     p->solver,   p->adaptive,      p->easy_iterations, p->hard_iterations,
+      p->cut_driven};
+  const pw_real number[] = {p->step_s, p->tolerance, p->step_least, p->step_most};
   pw_hash_bytes(hash, choice, sizeof choice);
   pw_hash_bytes(hash, number, sizeof number);
 }

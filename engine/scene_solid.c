@@ -44,6 +44,16 @@ const pw_key pw_scene_keys_implicit[] = {
    "load steps of the run"},
   {"step_s", PW_KEY_REAL, AT(implicit.step_s), PW_TINY, 1e12, "1", NULL, NULL,
    "time of a load step"},
+  {"adaptive", PW_KEY_BOOL, AT(implicit.adaptive), 0, 0, "false", NULL, NULL,
+   "steps longer or shorter than a load step, as the iterations they take ask for"},
+  {"step_least", PW_KEY_REAL, AT(implicit.step_least), 1e-6, 1, "0.01", NULL, "adaptive=true",
+   "shortest step, in load steps"},
+  {"step_most", PW_KEY_REAL, AT(implicit.step_most), 1, 1e6, "10", NULL, "adaptive=true",
+   "longest step, in load steps; outputs are met, so that history_every_steps limits it too"},
+  {"easy_iterations", PW_KEY_INT, AT(implicit.easy_iterations), 0, 63, "4", NULL, "adaptive=true",
+   "a step of no more iterations makes the next one 1.5 times as long"},
+  {"hard_iterations", PW_KEY_INT, AT(implicit.hard_iterations), 1, 64, "8", NULL, "adaptive=true",
+   "a step of as many, or one that had to be cut or approached, halves the next one"},
   {"fbar", PW_KEY_CHOICE, AT(implicit.fbar), 0, 0, "increment", "none|increment|total", NULL,
    "volume change averaged over patches: not, over the step, or since the beginning"},
   {"point_rule", PW_KEY_CHOICE, AT(implicit.point_rule), 0, 0, "four",
@@ -61,6 +71,8 @@ const pw_key pw_scene_keys_implicit[] = {
    "halvings of a step in a row after which the run fails"},
   {"approach", PW_KEY_INT, AT(implicit.approach), 0, 20, "4", NULL, NULL,
    "halvings of the way to a step that fails, tried before it is cut; 0: it is cut at once"},
+  {"cut_driven", PW_KEY_BOOL, AT(implicit.cut_driven), 0, 0, "false", NULL, NULL,
+   "cut steps also where nodes are driven and the mesh is put back in between"},
   {"line_search", PW_KEY_INT, AT(implicit.line_search), 0, 20, "0", NULL, NULL,
    "halvings of a correction that leaves more out of balance; 0: none"},
   {"mechanisms", PW_KEY_CHOICE, AT(implicit.mechanisms), 0, 0, "warn", "ignore|warn|error", NULL,
@@ -74,8 +86,8 @@ const pw_key pw_scene_keys_implicit[] = {
   {0}};
 
 const pw_key pw_scene_keys_solid_output[] = {
-  {"history_every_steps", PW_KEY_INT, AT(output.history_every_steps), 1, 1e6, "1", NULL, NULL,
-   "load steps between rows of history.csv"},
+  {"history_every_steps", PW_KEY_INT, AT(output.history_every_steps), 0, 1e6, "1", NULL, NULL,
+   "load steps between rows of history.csv; 0: a row for every step, whole or not"},
   {"snapshot_every_steps", PW_KEY_INT, AT(output.snapshot_every_steps), 0, 1e6, "0", NULL, NULL,
    "load steps between ParaView files; 0: only at the start and the end"},
   {"checkpoint_every_steps", PW_KEY_INT, AT(output.checkpoint_every_steps), 0, 1e6, "0", NULL, NULL,
@@ -162,6 +174,9 @@ pw_status pw_scene_check_implicit(const pw_scene *s)
   PW_REQUIRE(p->point_rule != PW_TET_RULE_ELEVEN_KEAST || p->negative_volumes, PW_ERR_SCENE,
              "point_rule: eleven_keast gives one point in eleven a negative volume; say "
              "negative_volumes: true to have it");
+  PW_REQUIRE(p->easy_iterations < p->hard_iterations, PW_ERR_SCENE,
+             "easy_iterations: %d must be less than hard_iterations = %d", p->easy_iterations,
+             p->hard_iterations);
   return PW_OK;
 }
 

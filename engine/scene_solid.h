@@ -39,7 +39,11 @@ typedef struct pw_scene_implicit {
   bool negative_volumes;
   pw_real tolerance;
   int max_iterations, max_cuts;
+  bool adaptive;
+  pw_real step_least, step_most; /**< adaptive: in load steps */
+  int easy_iterations, hard_iterations;
   int approach, line_search;
+  bool cut_driven;
   bool from_previous;
   int mechanisms; /**< pw_mechanisms */
   int solver;     /**< pw_solver_engine */

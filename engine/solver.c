@@ -22,6 +22,7 @@ static const struct {
 struct pw_solver {
   pw_solver_options options;
   pw_solver_engine chosen; /* PW_SOLVER_AUTO: not yet */
+  bool unlucky;            /* iterations of the engine chosen have not converged */
   const pw_solver_calls *calls;
   void *state;
   pw_real reduction;
@@ -102,6 +103,9 @@ void pw_solver_destroy(pw_solver **solver)
 
 static pw_idx most_direct(const pw_solver *s)
 {
+  if (s->options.most_direct > 0) {
+    return s->options.most_direct;
+  }
   return s->options.symmetric ? PW_SOLVER_DIRECT_SYMMETRIC : PW_SOLVER_DIRECT_GENERAL;
 }
 
@@ -113,7 +117,7 @@ static pw_status choose(pw_solver *s, const pw_csr *m)
   }
   pw_solver_engine engine = PW_SOLVER_DIRECT;
   if (m->n > most_direct(s)) {
-    engine = pw_solver_has_petsc() ? PW_SOLVER_PETSC_ILU : PW_SOLVER_KRYLOV;
+    engine = !s->unlucky && pw_solver_has_petsc() ? PW_SOLVER_PETSC_GAMG : PW_SOLVER_KRYLOV;
   }
   return engine == s->chosen ? PW_OK : take_engine(s, engine);
 }
@@ -145,7 +149,14 @@ void pw_solver_aim(pw_solver *s, pw_real reduction)
 pw_status pw_solver_solve(pw_solver *s, const pw_csr *m, const pw_real *b, pw_real *x)
 {
   PW_REQUIRE(s->calls, PW_ERR_ARGUMENT, "a solver without a matrix");
-  PW_TRY(s->calls->solve(s->state, m, s->reduction, b, x, &s->counts));
+  pw_status status = s->calls->solve(s->state, m, s->reduction, b, x, &s->counts);
+  if (status == PW_RETRY_DIVERGED && s->options.engine == PW_SOLVER_AUTO &&
+      s->chosen == PW_SOLVER_PETSC_GAMG) {
+    s->unlucky = true;
+    PW_TRY(pw_solver_factor(s, m));
+    status = s->calls->solve(s->state, m, s->reduction, b, x, &s->counts);
+  }
+  PW_TRY(status);
   s->counts.solves++;
   s->counts.iterations += s->counts.last;
   pw_real sum = 0.0;
@@ -195,7 +206,7 @@ pw_status pw_solver_check_memory(const char *what, const pw_csr *m, pw_off bytes
   const pw_off room = most > 0 ? most : bytes_available();
   const pw_off other = pw_solver_petsc_bytes(m);
   PW_REQUIRE(room == 0 || bytes <= room, PW_ERR_MEMORY,
-             "%s: the factor of %d equations needs about %.3g GB, %.3g GB can be had: petsc_ilu "
+             "%s: the factor of %d equations needs about %.3g GB, %.3g GB can be had: petsc_gamg "
              "would need about %.2g GB%s",
              what, (int)m->n, 1e-9 * (double)bytes, 1e-9 * (double)room, 1e-9 * (double)other,
              other > room ? ", too much as well" : "");

@@ -117,7 +117,8 @@ static pw_status engine_solve(void *state, const pw_csr *m, pw_real reduction, c
 
 static void engine_forget(void *state)
 {
-  (void)state;
+  const engine *e = state;
+  e->module->forget(e->system);
 }
 
 static const char *engine_describe(const void *state)

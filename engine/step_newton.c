@@ -43,7 +43,8 @@ static pw_status allocate(pw_newton *n)
   pw_solver_options solver = pw_solver_defaults(pw_tet_model_is_symmetric(n->model));
   solver.engine = o->solver;
   solver.x = n->model->mesh->x;
-  if (o->mechanisms != PW_MECHANISMS_ERROR) { /* such a matrix is singular, but its equations agree */
+  if (o->mechanisms !=
+      PW_MECHANISMS_ERROR) { /* such a matrix is singular, but its equations agree */
     solver.least_pivot = 0.0;
   }
   return pw_solver_create(&solver, &n->solver);

@@ -13,6 +13,8 @@
 /* Logarithmic strains come from exponentials near 1, whose last digit is this large. */
 static const pw_real strain_rounding = 1e-15;
 
+enum { PATCH_WORK = 24 }; /* of a patch with points, counted in points */
+
 enum { SEARCH_CHUNK = 4096 }; /* points one thread searches at a time */
 
 void pw_tet_model_destroy(pw_tet_model *m)
@@ -79,7 +81,8 @@ static pw_status divide(pw_tet_model *m)
   pw_idx size = pw_blocks_choose_size(m->mesh->npatch, m->threads);
   pw_status s = pw_patch_blocks_create(&m->mesh->tets, m->mesh->per, weight, size, &m->blocks);
   pw_mem_free(&weight);
-  return s;
+  PW_TRY(s);
+  return pw_share_create(&m->blocks, m->threads);
 }
 
 static pw_status build(const pw_tet_setup *setup, pw_tet_model *m)
@@ -198,11 +201,30 @@ static void number_equations(pw_tet_model *m)
   }
 }
 
+/* Divide the blocks among the threads by what they hold: the matrix of a patch costs as much as many
+ * points. No block counts as empty, so that each leaves its sums. */
+static void share_blocks(pw_tet_model *m)
+{
+  pw_blocks *b = &m->blocks;
+  const pw_idx per = m->mesh->per;
+  for (pw_idx k = 0; k < b->nblock; k++) {
+    pw_off work = 1;
+    for (pw_idx l = b->elem_start[k]; l < b->elem_start[k + 1]; l++) {
+      const pw_idx first = b->elem[l] * per;
+      const pw_off points = m->elem_start[first + per] - m->elem_start[first];
+      work += points > 0 ? PATCH_WORK + points : 0;
+    }
+    b->share_size[k] = b->share_work[k] = work;
+  }
+  pw_share_balance(b);
+}
+
 pw_status pw_tet_model_begin(pw_tet_model *m)
 {
   search(m);
   PW_TRY(check_inside(m));
   sort_points(m);
+  share_blocks(m);
   number_equations(m);
   m->has_mass = false;
   pw_tet_ghost_begin(m);
@@ -216,20 +238,40 @@ typedef struct {
   bool tangent;
 } evaluation;
 
+/* Part of what blocks add to is set to zero. */
+static void clear_part(void *ctx, int part, int parts)
+{
+  const evaluation *ev = ctx;
+  pw_tet_model *m = ev->m;
+  const size_t dofs = 3 * (size_t)m->mesh->tets.nnode;
+  const size_t first = dofs * (size_t)part / (size_t)parts;
+  const size_t bytes = (dofs * ((size_t)part + 1) / (size_t)parts - first) * sizeof *m->force;
+  memset(m->force + first, 0, bytes);
+  if (m->inertia.on) {
+    memset(m->inertia.force + first, 0, bytes);
+  }
+  if (ev->tangent) {
+    memset(m->lift + first, 0, bytes);
+    pw_csr_clear(&m->csr, part, parts);
+  }
+}
+
 static void scatter(pw_tet_model *m, pw_idx p, const pw_real *force, const pw_real *k)
 {
   const size_t nnode = (size_t)m->mesh->tets.nnode;
   const pw_idx np = m->mesh->patch_nodes, *node = m->mesh->patch_node + p * np;
   pw_real given[PW_PATCH_DOFS];
+  bool driven = false;
   for (pw_idx i = 0; i < 3 * np; i++) {
     const size_t at = (size_t)(i % 3) * nnode + (size_t)node[i / 3];
     m->force[at] += force[i];
     given[i] = m->fixed[at] ? m->prescribed[at] : 0.0;
+    driven |= given[i] != 0.0;
   }
   if (!k) {
     return;
   }
-  for (pw_idx i = 0; i < 3 * np; i++) {
+  for (pw_idx i = 0; driven && i < 3 * np; i++) {
     pw_real sum = 0.0;
     for (pw_idx j = 0; j < 3 * np; j++) {
       sum += k[PW_PATCH_DOFS * i + j] * given[j];
@@ -301,16 +343,8 @@ static pw_status check_elements(const pw_tet_model *m, const pw_real *u)
 pw_status pw_tet_model_evaluate(pw_tet_model *m, const pw_real *u, bool tangent)
 {
   evaluation ev = {.m = m, .u = u, .tangent = tangent};
-  const size_t bytes = 3 * (size_t)m->mesh->tets.nnode * sizeof *m->force;
-  memset(m->force, 0, bytes);
-  if (m->inertia.on) {
-    memset(m->inertia.force, 0, bytes);
-  }
-  if (tangent) {
-    memset(m->lift, 0, bytes);
-    pw_csr_clear(&m->csr);
-  }
-  pw_assemble_coloured(&m->blocks, m->threads, evaluate_block, &ev);
+  const pw_pass pass = {.before = clear_part, .block = evaluate_block};
+  pw_assemble_pass(&m->blocks, m->threads, &pass, &ev);
   pw_tet_ghost_add(m, u, tangent);
   pw_real sum = 0.0;
   for (pw_idx k = 0; k < m->blocks.nblock; k++) {

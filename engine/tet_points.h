@@ -40,26 +40,26 @@ typedef struct pw_tet_fill {
 
 typedef struct pw_tet_points {
   pw_idx n, ld;
-  int nstate;             /**< components of state: the most a material needs */
-  pw_real *x;             /**< [3][ld] m */
-  pw_real *volume;        /**< [ld] true volume now; m3 */
-  pw_real *jac;           /**< [ld] true volume over that at the start */
-  pw_real *jac_bar;       /**< [ld] the same of F-bar */
-  pw_real *def_grad;      /**< [9][ld] deformation gradient of F-bar since the start, row-major;
+  int nstate;              /**< components of state: the most a material needs */
+  pw_real *x;              /**< [3][ld] m */
+  pw_real *volume;         /**< [ld] true volume now; m3 */
+  pw_real *jac;            /**< [ld] true volume over that at the start */
+  pw_real *jac_bar;        /**< [ld] the same of F-bar */
+  pw_real *def_grad;       /**< [9][ld] deformation gradient of F-bar since the start, row-major;
                                NULL unless a material needs it */
-  pw_real *stress;        /**< [6][ld] Pa */
-  pw_real *state;         /**< [nstate][ld] of the material */
-  pw_real *left_cg;       /**< [6][ld] b = F F^T of F-bar, or NULL: no material needs it */
-  pw_real *stress_trial;  /**< [6][ld] at the end of the step as the last iteration sees it; Pa */
-  pw_real *state_trial;   /**< [nstate][ld] likewise */
-  pw_real *jac_bar_trial; /**< [ld] likewise */
+  pw_real *stress;         /**< [6][ld] Pa */
+  pw_real *state;          /**< [nstate][ld] of the material */
+  pw_real *left_cg;        /**< [6][ld] b = F F^T of F-bar, or NULL: no material needs it */
+  pw_real *stress_trial;   /**< [6][ld] at the end of the step as the last iteration sees it; Pa */
+  pw_real *state_trial;    /**< [nstate][ld] likewise */
+  pw_real *jac_bar_trial;  /**< [ld] likewise */
   pw_real *def_grad_trial; /**< [9][ld] likewise, or NULL */
-  pw_real *left_cg_trial; /**< [6][ld] likewise, or NULL */
-  pw_real *mass;          /**< [ld] kg; never changes */
-  pw_real *velocity;      /**< [3][ld] m/s, or NULL: quasi-static (pw_tet_points_let_move()) */
-  pw_real *acceleration;  /**< [3][ld] m/s2, likewise */
-  pw_idx *body;           /**< [ld] material */
-  pw_idx *elem;           /**< [ld] parent element */
+  pw_real *left_cg_trial;  /**< [6][ld] likewise, or NULL */
+  pw_real *mass;           /**< [ld] kg; never changes */
+  pw_real *velocity;       /**< [3][ld] m/s, or NULL: quasi-static (pw_tet_points_let_move()) */
+  pw_real *acceleration;   /**< [3][ld] m/s2, likewise */
+  pw_idx *body;            /**< [ld] material */
+  pw_idx *elem;            /**< [ld] parent element */
 } pw_tet_points;
 
 /**

@@ -28,11 +28,10 @@ static void destroy(void **out)
   *out = NULL;
 }
 
-/* A load step is what it is: outputs fall between load steps. */
+/* Outputs fall between load steps; adaptive steps are cut short for them. */
 static pw_status step(void *sim, pw_real limit_s)
 {
-  (void)limit_s;
-  return pw_implicit_step(sim);
+  return pw_implicit_advance(sim, limit_s);
 }
 
 static void state(const void *sim, pw_job_state *out)

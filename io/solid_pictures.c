@@ -8,7 +8,6 @@
 #include "engine/core/mem.h"
 #include "io/pictures_plot.h"
 #include "io/pictures_series.h"
-#include "kernels/tensor.h"
 
 enum {
   CANVAS = 1200,
@@ -38,18 +37,6 @@ typedef struct cut {
   pw_real *work;             /* [nelem] values in the plane */
   pw_real range[2];
 } cut;
-
-static pw_real mean_stress(const pw_tet_points *p, pw_idx i)
-{
-  return pw_t6_trace(pw_t6_load(p->stress + i, (size_t)p->ld)) / 3.0;
-}
-
-static pw_real von_mises(const pw_tet_points *p, pw_idx i)
-{
-  const pw_t6 s = pw_t6_load(p->stress + i, (size_t)p->ld);
-  const pw_t6 d = pw_t6_shift(s, -pw_t6_trace(s) / 3.0);
-  return sqrt(1.5 * pw_t6_dot(d, d));
-}
 
 static pw_real node_at(const cut *c, pw_idx node, int axis)
 {
@@ -224,8 +211,8 @@ static pw_status draw(cut *c, const char *folder, const quantity *what)
 
 pw_status pw_solid_pictures(const char *folder, const pw_implicit *sim)
 {
-  static const quantity mean = {"mean_stress", "Mean stress", mean_stress};
-  static const quantity mises = {"von_mises_stress", "Von Mises stress", von_mises};
+  static const quantity mean = {"mean_stress", "Mean stress", pw_tet_points_mean_stress};
+  static const quantity mises = {"von_mises_stress", "Von Mises stress", pw_tet_points_von_mises};
   cut c = {.sim = sim, .m = pw_implicit_model(sim)};
   const pw_idx nelem = c.m->mesh->tets.nelem;
   PW_TRY(pw_make_folder(folder));

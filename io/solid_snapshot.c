@@ -8,7 +8,6 @@
 #include "engine/core/mem.h"
 #include "io/atomic_file.h"
 #include "io/vtk_files.h"
-#include "kernels/tensor.h"
 
 enum { MAX_COLUMNS = 16 + PW_MAX_STATE };
 
@@ -51,10 +50,8 @@ static void add_invariants(table *t, const pw_tet_points *p)
   float *mean = add_column(t, "mean_stress_pa", 1, p->n);
   float *mises = add_column(t, "von_mises_stress_pa", 1, p->n);
   for (pw_idx i = 0; mean && mises && i < p->n; i++) {
-    const pw_t6 s = pw_t6_load(p->stress + i, (size_t)p->ld);
-    const pw_t6 d = pw_t6_shift(s, -pw_t6_trace(s) / 3.0);
-    mean[i] = (float)(pw_t6_trace(s) / 3.0);
-    mises[i] = (float)sqrt(1.5 * pw_t6_dot(d, d));
+    mean[i] = (float)pw_tet_points_mean_stress(p, i);
+    mises[i] = (float)pw_tet_points_von_mises(p, i);
   }
 }
 

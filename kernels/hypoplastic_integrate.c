@@ -7,8 +7,9 @@
 typedef struct run {
   const pw_hypo *h;
   pw_t6 de;
-  pw_real size, log_dvol; /* |dE| and ln of the volume ratio */
-  pw_real specific;       /* 1 + e at the start */
+  pw_real size, dvol; /* |dE|, the volume ratio of the increment */
+  pw_real log_dvol;   /* its logarithm, once it is needed; else NaN */
+  pw_real specific;   /* 1 + e at the start */
   pw_t6 stress, delta;
   pw_real substep;
   pw_hypo_slope last; /* at the end of the last substep tried */
@@ -17,64 +18,68 @@ typedef struct run {
   pw_material_counts counts;
 } run;
 
-static pw_real void_ratio_at(const run *r, pw_real t)
+/** 1 + e grows as exp(t ln dvol); the ends and the middle of the increment do without both. */
+static pw_real void_ratio_at(run *r, pw_real t)
 {
+  if (t == 0.0 || t == 0.5 || t == 1.0) {
+    return r->specific * (t == 0.0 ? 1.0 : (t == 1.0 ? r->dvol : sqrt(r->dvol))) - 1.0;
+  }
+  r->log_dvol = isnan(r->log_dvol) ? pw_log(r->dvol) : r->log_dvol;
   return r->specific * pw_exp(t * r->log_dvol) - 1.0;
 }
 
 /** Rates in one of their forms, each compiled on its own. */
 #define RATES(form)                                                                                \
-  static pw_hypo_slope rates_##form(const run *r, pw_t6 stress, pw_t6 delta, pw_real e)            \
+  static void rates_##form(const run *r, const pw_t6 *stress, const pw_t6 *delta, pw_real e,       \
+                           pw_hypo_slope *k)                                                       \
   {                                                                                                \
-    return pw_hypo_slope_of(r->h, stress, delta, e, r->de, r->size, form);                         \
+    *k = pw_hypo_slope_of(r->h, *stress, *delta, e, r->de, r->size, form);                         \
   }
 RATES(0)
 RATES(1)
 RATES(2)
 RATES(3)
-static pw_hypo_slope (*const rates[PW_HYPO_FORMS])(const run *r, pw_t6 stress, pw_t6 delta,
-                                                   pw_real e) = {rates_0, rates_1, rates_2,
-                                                                 rates_3};
+static void (*const rates[PW_HYPO_FORMS])(const run *, const pw_t6 *, const pw_t6 *, pw_real,
+                                          pw_hypo_slope *) = {rates_0, rates_1, rates_2, rates_3};
 
 /** Rates at a stage; a stress beyond the limits is moved back first. */
-static pw_hypo_slope stage(run *r, pw_t6 *stress, pw_t6 delta, pw_real t)
+PW_INLINE void stage(run *r, pw_t6 *stress, const pw_t6 *delta, pw_real t, pw_hypo_slope *k)
 {
   int form = r->swept ? r->h->form & ~PW_HYPO_WITH : r->h->form;
   pw_real e = void_ratio_at(r, t);
   r->counts.rhs++;
-  pw_hypo_slope k = rates[form](r, *stress, delta, e);
-  if (!(k.inside > 0.0)) {
+  rates[form](r, stress, delta, e, k);
+  if (!(k->inside > 0.0)) {
     *stress = pw_hypo_limit(r->h, *stress);
-    k = rates[form](r, *stress, delta, e);
+    rates[form](r, stress, delta, e, k);
   }
   if (r->swept) {
-    k.delta = (pw_t6){0};
+    k->delta = (pw_t6){0};
   }
-  return k;
 }
 
 /** |delta| never exceeds R; only rounding and the truncation of a stage would make it. */
-static pw_t6 clip(const pw_hypo *h, pw_t6 delta)
+PW_INLINE pw_t6 clip(const pw_hypo *h, pw_t6 delta)
 {
   pw_real rho2 = pw_t6_dot(delta, delta) * h->inv_r2;
   return rho2 > 1.0 ? pw_t6_scale(1.0 / sqrt(rho2), delta) : delta;
 }
 
 /** An embedded step of orders 3(2) from @p k1: nodes 0, 1/2, 1, weights 1/6, 2/3, 1/6. */
-static pw_real attempt(run *r, const pw_hypo_slope *k1, pw_real t, pw_real step, pw_t6 *stress,
-                       pw_t6 *delta)
+PW_INLINE pw_real attempt(run *r, const pw_hypo_slope *k1, pw_real t, pw_real step, pw_t6 *stress,
+                          pw_t6 *delta)
 {
   pw_t6 mid = pw_t6_axpy(r->stress, 0.5 * step, k1->stress);
   pw_t6 mid_delta = pw_t6_axpy(r->delta, 0.5 * step, k1->delta);
-  pw_hypo_slope k2 = stage(r, &mid, mid_delta, t + 0.5 * step);
+  pw_hypo_slope k2, *k3 = &r->last;
+  stage(r, &mid, &mid_delta, t + 0.5 * step, &k2);
   pw_t6 end = pw_t6_axpy(pw_t6_axpy(r->stress, -step, k1->stress), 2.0 * step, k2.stress);
   pw_t6 end_delta = pw_t6_axpy(pw_t6_axpy(r->delta, -step, k1->delta), 2.0 * step, k2.delta);
-  pw_hypo_slope k3 = stage(r, &end, end_delta, t + step);
-  r->last = k3;
-  pw_t6 sum = pw_t6_axpy(pw_t6_axpy(k1->stress, 4.0, k2.stress), 1.0, k3.stress);
-  pw_t6 sum_delta = pw_t6_axpy(pw_t6_axpy(k1->delta, 4.0, k2.delta), 1.0, k3.delta);
-  pw_t6 err = pw_t6_axpy(pw_t6_axpy(k1->stress, -2.0, k2.stress), 1.0, k3.stress);
-  pw_t6 err_delta = pw_t6_axpy(pw_t6_axpy(k1->delta, -2.0, k2.delta), 1.0, k3.delta);
+  stage(r, &end, &end_delta, t + step, k3);
+  pw_t6 sum = pw_t6_axpy(pw_t6_axpy(k1->stress, 4.0, k2.stress), 1.0, k3->stress);
+  pw_t6 sum_delta = pw_t6_axpy(pw_t6_axpy(k1->delta, 4.0, k2.delta), 1.0, k3->delta);
+  pw_t6 err = pw_t6_axpy(pw_t6_axpy(k1->stress, -2.0, k2.stress), 1.0, k3->stress);
+  pw_t6 err_delta = pw_t6_axpy(pw_t6_axpy(k1->delta, -2.0, k2.delta), 1.0, k3->delta);
   pw_real sixth = step * (1.0 / 6.0);
   *stress = pw_t6_axpy(r->stress, sixth, sum);
   *delta = pw_t6_axpy(r->delta, sixth, sum_delta);
@@ -164,11 +169,11 @@ static bool becomes_swept(run *r)
 /** Integrate from @p t to @p end with error control. */
 static void advance(run *r, pw_real t, pw_real end)
 {
-  pw_hypo_slope k1 = {0};
+  pw_hypo_slope k1;
   bool moved = true;
   while (t < end) {
     if (moved) {
-      k1 = stage(r, &r->stress, r->delta, t);
+      stage(r, &r->stress, &r->delta, t, &k1);
       if (separated(r, &k1, end - t)) {
         record(r, end, PW_HYPO_SEPARATED);
         return;
@@ -181,10 +186,12 @@ static void advance(run *r, pw_real t, pw_real end)
     pw_real err = attempt(r, &k1, t, step, &stress, &delta);
     bool good = err <= r->h->tolerance;
     bool forced = !good && (exhausted || step <= PW_HYPO_SUBSTEP_MIN);
-    /* an error that is not a number: a quarter */
-    pw_real next = pw_hypo_next_substep(r->h, step, err);
-    next = err >= 0.0 ? next : pw_max(PW_HYPO_SUBSTEP_MIN, 0.25 * step);
-    r->substep = good && last ? pw_max(r->substep, next) : next;
+    if (!(good && last && r->substep >= 1.0)) { /* else it stays at 1 */
+      /* an error that is not a number: a quarter */
+      pw_real next = pw_hypo_next_substep(r->h, step, err);
+      next = err >= 0.0 ? next : pw_max(PW_HYPO_SUBSTEP_MIN, 0.25 * step);
+      r->substep = good && last ? pw_max(r->substep, next) : next;
+    }
     moved = good || forced;
     if (!moved) {
       r->counts.rejected++;
@@ -208,7 +215,8 @@ static bool begin(run *r, const pw_hypo *h, pw_t6 de, pw_real dvol, const pw_hyp
   r->stress = pw_t6_shift(p->stress, -h->p_t);
   r->specific = 1.0 + p->void_ratio;
   bool usable = dvol > 0.0 && r->specific * dvol > 1.0 + 1e-9 && isfinite(r->specific * dvol);
-  r->log_dvol = usable ? log(dvol) : 0.0;
+  r->dvol = usable ? dvol : 1.0;
+  r->log_dvol = (pw_real)NAN;
   if (!(r->substep > 0.0 && r->substep <= 1.0)) {
     r->substep = 1.0;
   }
@@ -274,7 +282,8 @@ pw_status pw_hypo_repeat(const pw_hypo *h, pw_t6 de, pw_real dvol, pw_hypo_point
   pw_real t = 0.0, split = turning_time(&r), was = path->split;
   bool stretch = was > 0.0 && split > 0.0;
   for (int i = 0; i < path->n; i++) {
-    pw_hypo_slope k1 = stage(&r, &r.stress, r.delta, t);
+    pw_hypo_slope k1;
+    stage(&r, &r.stress, &r.delta, t, &k1);
     pw_real end = path->end[i];
     if (stretch && i < path->n - 1) {
       end = end <= was ? end * (split / was) : 1.0 - (1.0 - end) * ((1.0 - split) / (1.0 - was));

@@ -175,6 +175,37 @@ static void strength_limits_the_shear(void **state)
   }
 }
 
+/* A block that slides 1 cm above the plate, within the reach of adhesion or beyond it: it is held back
+ * by its strength, and by nothing along the normal; or not at all. What it loses is dissipated. */
+static void adhesion_reaches_as_far_as_it_is_told(void **state)
+{
+  (void)state;
+  for (int kind = 0; kind < 2; kind++) {
+    pw_scene *s = block(false, 0.01, 0.0);
+    pw_contact_corner_param *p = contact_of(s);
+    p->friction = 0.3;
+    p->adhesion_pa = 1000.0;
+    p->adhesion_gap_m = kind == 0 ? 0.02 : 0.005;
+    s->body[1].velocity_m_s[0] = 1.0;
+    pw_sim *sim = test_sim(s, 1);
+    pw_real a[5], b[5];
+    test_run_to(sim, 0.02);
+    test_body_sums(sim, 1, a);
+    pw_real lost = sim->energy.contact;
+    test_run_to(sim, 0.06); /* before it has tilted much */
+    test_body_sums(sim, 1, b);
+    pw_real exact = kind == 0 ? -1000.0 / (DENSITY * HEIGHT) : 0.0, way = b[3] - a[3];
+    print_message("reach %.3f m: a = %.4f, exact %.4f m/s2, normal %.1e m/s\n", p->adhesion_gap_m,
+                  (b[1] - a[1]) / a[0] / 0.04, exact, b[2] / b[0]);
+    assert_near((b[1] - a[1]) / a[0] / 0.04, exact, 0.02);
+    assert_near(b[2] / b[0], 0.0, 0.01);
+    /* Tilting, its lower face falls behind its centre by up to 5 % of the way. */
+    assert_near(sim->energy.contact - lost, kind == 0 ? 1000.0 * WIDTH * way : 0.0,
+                0.05 * 1000.0 * way);
+    pw_sim_destroy(&sim);
+  }
+}
+
 /* Error of the energy of a block that falls on the plate and rebounds, relative. */
 static pw_real impact_error(bool rigid, int phase, pw_real cfl)
 {
@@ -262,6 +293,7 @@ int main(void)
       cmocka_unit_test(overlap_at_rest_stays_at_rest),
       cmocka_unit_test(leaves_no_faster_than_it_came),
       cmocka_unit_test(strength_limits_the_shear),
+      cmocka_unit_test(adhesion_reaches_as_far_as_it_is_told),
       cmocka_unit_test(impact_keeps_energy),
       cmocka_unit_test(a_driven_rod_is_resolved),
   };

@@ -164,6 +164,31 @@ static void ramps_begin_and_end(void **state)
   pw_implicit_destroy(&sim);
 }
 
+/* Easy steps grow by half: an elastic load in 8 load steps takes 1 + 1.5 + 2.25 and what is left of
+ * 3, and ends where fixed steps do; a limit is met. */
+static void adaptive_steps_end_where_whole_ones_do(void **state)
+{
+  (void)state;
+  const char *const set[] = {
+      "boundary.3={group: y_max, fix_y: true, displacement_m: [0, -0.002, 0]}",
+      "implicit.steps=8",
+      "implicit.adaptive=true",
+  };
+  pw_implicit *sim = start(3, set);
+  assert_ok(pw_implicit_step(sim));
+  assert_near(pw_implicit_time(sim), 1.0, 0.0);
+  assert_ok(pw_implicit_step(sim));
+  assert_near(pw_implicit_time(sim), 2.5, 0.0);
+  assert_ok(pw_implicit_advance(sim, 0.25));
+  assert_near(pw_implicit_time(sim), 2.75, 0.0);
+  test_implicit_run(sim);
+  assert_near(pw_implicit_time(sim), 8.0, 0.0);
+  assert_int_equal(pw_implicit_steps(sim), 5); /* then 2.25 and the 3 that are left */
+  assert_near(test_implicit_history(sim, "boundary_3_displacement_y_m"), -0.002, 0.0);
+  assert_near(test_implicit_history(sim, "boundary_3_force_y_n"), -3000.0, 3.0);
+  pw_implicit_destroy(&sim);
+}
+
 /* Free vibration of a bar along z with its end held: the lowest frequency of an elastic bar is
  * sqrt(E/rho)/(4 L) = 1.8634 Hz for nu = 0 and L = 3 m (its mode is a quarter of a wave). */
 static void dynamics_swing(void **state)
@@ -203,6 +228,7 @@ int main(void)
       cmocka_unit_test(initial_stress_grows_with_depth),
       cmocka_unit_test(driven_boundaries_move_rigidly),
       cmocka_unit_test(ramps_begin_and_end),
+      cmocka_unit_test(adaptive_steps_end_where_whole_ones_do),
       cmocka_unit_test(dynamics_swing),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);

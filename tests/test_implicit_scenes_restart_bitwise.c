@@ -57,8 +57,11 @@ static void weight_and_footing_go_on(void **state)
 {
   (void)state;
   const char *const krylov[] = {"implicit.solver=krylov"};
+  const char *const adaptive[] = {"implicit.adaptive=true", "implicit.easy_iterations=2",
+                                  "implicit.hard_iterations=3"};
   check_restart("scenes/small_block.yaml", 0, NULL);
   check_restart("scenes/small_block.yaml", 1, krylov);
+  check_restart("scenes/small_block.yaml", 3, adaptive);
 }
 
 static void dynamics_go_on(void **state)

@@ -84,7 +84,7 @@ static void solutions_are_found(void **state)
       check_solution(s, &m);
       assert_int_equal(pw_solver_counted(s).indefinite, 1);
     }
-    pw_csr_clear(&m);
+    pw_csr_clear(&m, 0, 1);
     assert_int_equal(pw_solver_factor(s, &m), PW_RETRY_DIVERGED);
     assert_non_null(strstr(pw_error_text(), "singular"));
     pw_solver_destroy(&s);
@@ -103,7 +103,7 @@ static void patches_add_up(void **state)
   pw_csr m;
   assert_ok(pw_csr_create(&mesh, true, &m));
   number(&m, 4);
-  pw_csr_clear(&m);
+  pw_csr_clear(&m, 0, 1);
   memset(sum, 0, sizeof sum);
   for (pw_idx i = 0; i < m.n; i++) {
     x[i] = cos(i);

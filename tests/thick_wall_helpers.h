@@ -151,4 +151,36 @@ static inline wall_case wall_steel(bool sphere, pw_idx n, pw_fbar fbar)
                      .yield = 0.24e9};
 }
 
+/** A cavity of radius 1 in a body that hardly changes its volume, c_u = 1: von Mises where two
+ *  stresses are equal, or in plane strain. The body ends at four radii of
+ *  the plastic zone, 3.2 around a sphere. */
+static inline wall_case wall_cavity(bool sphere, double rigidity, pw_fbar fbar)
+{
+  const double outer = sphere ? 3.2 * cbrt(rigidity) : 4.0 * sqrt(rigidity);
+  return (wall_case){.sphere = sphere,
+                     .radial = 12,
+                     .round = sphere ? 3 : 5,
+                     .fbar = fbar,
+                     .inner = 1.0,
+                     .outer = outer,
+                     .growth = log(outer) + (sphere ? 0.6 : 0.3),
+                     .thick = 0.3,
+                     .young = 2.0 * rigidity * 1.49,
+                     .poisson = 0.49,
+                     .yield = sphere ? 2.0 : sqrt(3.0)};
+}
+
+/** Open a cavity to twice its volume in one step. @param[out] pressure then; Pa */
+static inline pw_status wall_double(solid *s, const wall_case *c, double *pressure)
+{
+  const double wider = (c->sphere ? cbrt(2.0) : sqrt(2.0)) - 1.0;
+  memset(s, 0, sizeof *s);
+  s->approach = 12;
+  s->line_search = 4;
+  PW_TRY(wall_start(s, c, wider * c->inner));
+  PW_TRY(solid_step(s, 0.0));
+  *pressure = wall_pressure(s, c, wider * c->inner, wider);
+  return PW_OK;
+}
+
 #endif /* PW_TESTS_THICK_WALL_HELPERS_H */

@@ -17,8 +17,8 @@ Circle(4) = {5, 1, 2};
 Curve Loop(1) = {1:4};
 Plane Surface(1) = {1};
 Transfinite Curve {1, 3} = n + 1;
-Transfinite Curve {2, 4} = Ceil(2.356 * n) + 1;
-Transfinite Surface {1};
+Transfinite Curve {2, 4} = 2 * Ceil(1.178 * n) + 1;
+Transfinite Surface {1} Alternated;
 out[] = Extrude {0, 0, (outer - inner) / n} { Surface{1}; Layers{1}; };
 
 Physical Volume("wall") = {out[1]};

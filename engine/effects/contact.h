@@ -41,6 +41,7 @@ typedef struct pw_contact_corner_param {
   int slave;  /**< body of material points whose domains' corners stay outside: soil */
   pw_real friction;
   pw_real adhesion_pa;           /**< shear strength of the interface without pressure */
+  pw_real adhesion_gap_m;        /**< adhesion acts up to this distance; 0: where it presses */
   pw_real shear_limit_pa;        /**< most shear stress; 0: no limit */
   pw_real stiffness_factor;      /**< of the slave's modulus over half a domain */
   pw_real normal_stiffness_pa_m; /**< 0: by the factor */

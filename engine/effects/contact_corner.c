@@ -31,6 +31,8 @@ static const pw_key keys[] = {
    "Coulomb's coefficient"},
   {"adhesion_pa", PW_KEY_REAL, AT(adhesion_pa), 0, 1e15, "0", NULL, NULL,
    "shear strength of the interface besides friction, while in contact"},
+  {"adhesion_gap_m", PW_KEY_REAL, AT(adhesion_gap_m), 0, 1e6, "0", NULL, NULL,
+   "adhesion acts on what is nearer to the surface, half a domain, say; 0: only on what presses"},
   {"shear_limit_pa", PW_KEY_REAL, AT(shear_limit_pa), 0, 1e15, "0", NULL, NULL,
    "largest shear stress of the interface; 0: no limit"},
   {"stiffness_factor", PW_KEY_REAL, AT(stiffness_factor), PW_TINY, 1e6, "0.2", NULL, NULL,
@@ -57,6 +59,9 @@ static pw_status check(const pw_scene *scene, const void *param)
              "the corners of domains are in contact: method.basis must be cpdi");
   PW_REQUIRE(scene->body[p->slave].kind == PW_BODY_POINTS, PW_ERR_SCENE,
              "the slave '%s' must be a body of points", scene->body[p->slave].name);
+  PW_REQUIRE(p->adhesion_gap_m <= 0.5 * scene->grid.cell_m, PW_ERR_SCENE,
+             "adhesion_gap_m = %g m must be at most half a cell, %g m", p->adhesion_gap_m,
+             0.5 * scene->grid.cell_m);
   PW_REQUIRE(p->segment_m <= scene->grid.cell_m * (1.0 + 1e-9), PW_ERR_SCENE,
              "segment_m = %g m must not be longer than a cell, %g m", p->segment_m,
              scene->grid.cell_m);
@@ -189,6 +194,7 @@ static pw_status allocate(const pw_sim *sim, pw_corner *c)
   PW_TRY(pw_mem_alloc("contact sites", sites, sizeof(pw_idx), &c->segment));
   PW_TRY(pw_mem_alloc("contact sums", sim->blocks.nblock, sizeof *c->sums, &c->sums));
   PW_TRY(pw_mem_alloc("contact boxes", 4 * (pw_off)sim->blocks.nblock, sizeof(pw_idx), &c->box));
+  PW_TRY(pw_mem_alloc("contact cover", c->surface.line->n, sizeof(pw_real), &c->covered));
   return pw_mem_alloc("contact stiffness", sim->mesh.nnode, sizeof(pw_real), &c->stiffness);
 }
 
@@ -224,6 +230,7 @@ static void destroy(void **ctx)
     pw_mem_free(&c->segment);
     pw_mem_free(&c->sums);
     pw_mem_free(&c->box);
+    pw_mem_free(&c->covered);
     pw_mem_free(&c->stiffness);
   }
   pw_mem_free(ctx);
@@ -262,7 +269,7 @@ static pw_status archive(pw_sim *sim, void *ctx, pw_archive *ar)
 {
   (void)sim;
   pw_corner *c = ctx;
-  pw_real value[6] = {c->master_modulus, c->centre_max,  c->softest,
+  pw_real value[6] = {c->master_modulus, c->centre_max, c->softest,
                       c->stiffest,       c->offset_max, c->last_dt};
   PW_TRY(pw_contact_tally_archive(&c->tally, "contact_corner/reaction", ar));
   if (!c->structure) {

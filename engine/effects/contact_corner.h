@@ -29,6 +29,7 @@ typedef struct pw_corner_pair {
   pw_real overlap;   /**< what of the gap makes force, >= 0; m */
   pw_real advance;   /**< way along the surface since the last step; m */
   pw_real area;      /**< m2 */
+  pw_real share;     /**< part of the area that adheres; - */
   pw_real density;   /**< stiffness per area; Pa/m */
   pw_real stiffness; /**< N/m */
   pw_real relax;     /**< part of the stretch that a growth of the stiffness leaves; - */
@@ -65,6 +66,7 @@ typedef struct pw_corner {
   pw_idx *segment;      /**< [8 points] its segment */
   pw_corner_sums *sums; /**< [nblock] */
   pw_idx *box;          /**< [4 nblock] first and last node of the elements of a block along x, y */
+  pw_real *covered;     /**< [line.n] area of the sites at each segment, with adhesion_gap_m; m2 */
   pw_real *stiffness;   /**< [nnode] sums at nodes; zero but within pw_corner_limit */
   /* Of the present step: */
   pw_real *slave_rec, *master_rec;

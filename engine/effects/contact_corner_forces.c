@@ -6,14 +6,52 @@
 
 #include "engine/assemble.h"
 
-/* Most force along the surface. */
+/* Most force along the surface. Domains lie against it as unevenly as they are large: a part of the
+ * sites carries all of the pressure, the others are off it by a part of a domain. Friction does not
+ * mind; adhesion is to act on the whole surface, so sites that far off it can be let have it. */
 static pw_real shear_cap(const pw_contact_corner_param *p, const pw_corner_pair *q)
 {
-  if (!(q->overlap > 0.0)) {
+  if (!(q->overlap > 0.0) && !(p->adhesion_gap_m > 0.0)) {
     return 0.0;
   }
-  pw_real cap = p->friction * q->stiffness * q->overlap + p->adhesion_pa * q->area;
+  pw_real cap = p->friction * q->stiffness * q->overlap + p->adhesion_pa * q->share * q->area;
   return p->shear_limit_pa > 0.0 ? pw_min(cap, p->shear_limit_pa * q->area) : cap;
+}
+
+/* Area of segment k of the master's surface; m2 per metre or radian. */
+static pw_real segment_area(const pw_interface *line, pw_idx k)
+{
+  const pw_real *a = line->node[k].x, *b = line->node[pw_interface_next(line, k)].x;
+  return hypot(b[0] - a[0], b[1] - a[1]) * (line->axi ? 0.5 * (a[0] + b[0]) : 1.0);
+}
+
+/*
+ * Sites near the surface may have more area than it has, where domains lie there askew or one behind
+ * the other. Together they adhere to what there is of it: over SIDE segments on either side.
+ */
+static void share_surface(pw_corner *c)
+{
+  enum { SIDE = 4 };
+  const pw_interface *line = c->surface.line;
+  const pw_idx n = pw_interface_segments(line);
+  for (pw_idx k = 0; k < n; k++) {
+    c->covered[k] = 0.0;
+  }
+  for (pw_idx i = 0; i < c->npair; i++) {
+    c->covered[c->pair[i].place.segment] += c->pair[i].area;
+  }
+  for (pw_idx i = 0; i < c->npair; i++) {
+    pw_real sites = 0.0, surface = 0.0;
+    for (pw_idx side = -SIDE; side <= SIDE; side++) {
+      pw_idx k = c->pair[i].place.segment + side;
+      k = line->closed ? (k + n) % n : k;
+      if (k >= 0 && k < n) {
+        sites += c->covered[k];
+        surface += segment_area(line, k);
+      }
+    }
+    c->pair[i].share = sites > surface ? surface / sites : 1.0;
+  }
 }
 
 /*
@@ -103,6 +141,9 @@ static void push_master(pw_corner *c)
 void pw_corner_forces(pw_corner *c, pw_real *spring, pw_real *dissipated)
 {
   if (c->npair > 0) {
+    if (c->param->adhesion_gap_m > 0.0) {
+      share_surface(c);
+    }
     pw_assemble_coloured(&c->sim->blocks, c->sim->threads, push_block, c);
     push_master(c);
   }

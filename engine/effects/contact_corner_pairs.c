@@ -71,13 +71,14 @@ static void find_site(pw_corner *c, pw_idx i, const pw_domain_now *d, int site, 
   pw_site_place(d, site, x);
   if (p->contact_arc[at] >= 0.0) {
     pw_round_line_follow(&c->surface, p->contact_arc[at], x, &place);
-    if (place.gap >= 0.0) {
+    if (place.gap >= c->param->adhesion_gap_m) {
       release(c, at, pw_site_area(d, site, place.n), sums);
       return;
     }
   } else {
     pw_idx cell = near_cell(c, i, site, x);
-    if (cell < 0 || !pw_round_line_find(&c->surface, x, cell, c->sim->mesh.cell, &place)) {
+    if (cell < 0 || !pw_round_line_near(&c->surface, x, cell, c->sim->mesh.cell, &place) ||
+        place.gap >= c->param->adhesion_gap_m) {
       return;
     }
   }
@@ -183,14 +184,14 @@ static void set_springs(const pw_corner *c, pw_corner_pair *q, const pw_domain_n
   q->stiffness = q->density * q->area;
   if (q->fresh) {
     offset = first_offset(c, q, d);
-    q->overlap = offset - gap;
+    q->overlap = pw_max(offset - gap, 0.0);
   } else {
     const pw_real held = p->contact_offset[at], jump = jump_of(p, q);
     const pw_real before = pw_max(held - (gap - jump), 0.0);
     q->relax = q->density > 0.0 ? old / q->density : 1.0;
     const pw_real kept = pw_min(pw_max(held + jump, pw_min(held, -ABSORBED * slack / LEFT)), 0.0);
     q->overlap = q->relax * (next_offset(q, kept, slack) - gap);
-    offset = gap + q->overlap;
+    offset = pw_min(gap + q->overlap, 0.0); /* positive: not on the surface, adhesion only */
     sums->dissipated +=
         pw_spring_energy(old * q->area, before) - pw_spring_energy(q->stiffness, q->overlap);
   }
@@ -202,8 +203,10 @@ static pw_corner_pair measure_site(const pw_corner *c, pw_idx at, const pw_domai
                                    pw_real modulus, pw_corner_sums *sums)
 {
   const pw_points *p = &c->sim->points;
-  pw_corner_pair q = {
-      .point = c->found[at] / PW_SITES, .site = c->found[at] % PW_SITES, .relax = 1.0};
+  pw_corner_pair q = {.point = c->found[at] / PW_SITES,
+                      .site = c->found[at] % PW_SITES,
+                      .share = 1.0,
+                      .relax = 1.0};
   pw_real x[2], arc = p->contact_arc[(pw_off)q.site * p->ld + q.point];
   pw_site_place(d, q.site, x);
   pw_round_line_place(&c->surface, c->segment[at], x, &q.place);

@@ -198,7 +198,7 @@ void pw_round_line_place(const pw_round_line *r, pw_idx segment, const pw_real *
   set_place(r, segment, &pair, x, place);
 }
 
-bool pw_round_line_find(const pw_round_line *r, const pw_real *x, pw_idx cell, pw_real reach,
+bool pw_round_line_near(const pw_round_line *r, const pw_real *x, pw_idx cell, pw_real reach,
                         pw_round_place *place)
 {
   pw_idx owner = pw_bins_nearest(&r->bins, &r->inner, reach, cell, x);
@@ -206,7 +206,13 @@ bool pw_round_line_find(const pw_round_line *r, const pw_real *x, pw_idx cell, p
     return false;
   }
   pw_round_line_place(r, owner, x, place);
-  return place->gap < 0.0;
+  return true;
+}
+
+bool pw_round_line_find(const pw_round_line *r, const pw_real *x, pw_idx cell, pw_real reach,
+                        pw_round_place *place)
+{
+  return pw_round_line_near(r, x, cell, reach, place) && place->gap < 0.0;
 }
 
 /* Segment whose place along the surface is the last that is not beyond arc. */

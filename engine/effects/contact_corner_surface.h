@@ -54,8 +54,12 @@ void pw_round_line_place(const pw_round_line *r, pw_idx segment, const pw_real *
  * @brief Place of a position that was not in contact.
  * @param[in] cell  lower left node of the cell that holds @p x
  * @param[in] reach how far off the surface to look at most; m
- * @return true when it lies inside; @p place is then set.
+ * @return true when it lies within @p reach of the surface or inside; @p place is then set.
  */
+bool pw_round_line_near(const pw_round_line *r, const pw_real *x, pw_idx cell, pw_real reach,
+                        pw_round_place *place);
+
+/** @brief The same, true only when it lies inside. */
 bool pw_round_line_find(const pw_round_line *r, const pw_real *x, pw_idx cell, pw_real reach,
                         pw_round_place *place);
 

@@ -7,7 +7,6 @@
 #include <string.h>
 
 #include "engine/core/mem.h"
-#include "kernels/tensor.h"
 
 /* clang-format off */
 static const pw_key tracer_keys[] = {
@@ -127,12 +126,8 @@ static pw_real value_of(const pw_stress_record_param *p, const pw_tet_points *q,
   if (p->component < 6) {
     return factor * s[(size_t)p->component * ld];
   }
-  const pw_t6 stress = pw_t6_load(s, ld);
-  if (p->component == 6) {
-    return factor * (s[0] + s[ld] + s[2 * ld]) / 3.0;
-  }
-  const pw_t6 deviator = pw_t6_shift(stress, -pw_t6_trace(stress) / 3.0);
-  return factor * sqrt(1.5 * pw_t6_dot(deviator, deviator));
+  return factor *
+         (p->component == 6 ? pw_tet_points_mean_stress(q, i) : pw_tet_points_von_mises(q, i));
 }
 
 static void history_record(const pw_implicit *sim, void *ctx, pw_record *row)

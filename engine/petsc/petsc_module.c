@@ -27,26 +27,12 @@ typedef struct {
   Vec right, left;
 } petsc_system;
 
-/* Message of the error that PETSc met first. */
-static char message[PW_PETSC_TEXT];
-
-static PetscErrorCode keep_message(MPI_Comm comm, int line, const char *func, const char *file,
-                                   PetscErrorCode code, PetscErrorType type, const char *text,
-                                   void *ctx)
-{
-  (void)comm;
-  (void)file;
-  (void)ctx;
-  if (type == PETSC_ERROR_INITIAL) {
-    snprintf(message, sizeof message, "%.180s (%.40s, line %d, code %d)", text ? text : "an error",
-             func, line, (int)code);
-  }
-  return code;
-}
-
 static pw_status failed(PetscErrorCode code, char *text)
 {
-  snprintf(text, PW_PETSC_TEXT, "%s", message);
+  const char *kind = NULL;
+  char *message = NULL;
+  PetscErrorMessage(code, &kind, &message);
+  snprintf(text, PW_PETSC_TEXT, "%.90s: %.140s", kind ? kind : "an error", message ? message : "");
   return code == PETSC_ERR_MEM ? PW_ERR_MEMORY : PW_ERR_SOLVER;
 }
 
@@ -73,7 +59,7 @@ static pw_status start(char *text)
     code = PetscPopSignalHandler();
   }
   if (code == 0) {
-    code = PetscPushErrorHandler(keep_message, NULL);
+    code = PetscPushErrorHandler(PetscIgnoreErrorHandler, NULL);
   }
   if (code != 0) {
     snprintf(text, PW_PETSC_TEXT, "code %d", (int)code);
@@ -107,10 +93,12 @@ static void destroy(void **system)
   *system = NULL;
 }
 
+/* Coarse nodes are found once for a pattern; their matrices follow every matrix. */
 static PetscErrorCode set_up_multigrid(PC pc)
 {
   TRY_PETSC(PCSetType(pc, PCGAMG));
-  return PCGAMGSetType(pc, PCGAMGAGG);
+  TRY_PETSC(PCGAMGSetType(pc, PCGAMGAGG));
+  return PCGAMGSetReuseInterpolation(pc, PETSC_TRUE);
 }
 
 /* A pivot that is not positive, or zero, is shifted until it is. */
@@ -310,6 +298,12 @@ static pw_status load(void *system, const pw_csr *m, char *text)
   return code == 0 ? PW_OK : failed(code, text);
 }
 
+static void forget(void *system)
+{
+  petsc_system *s = system;
+  s->revision = -1;
+}
+
 static PetscErrorCode iterate(petsc_system *s, pw_real reduction, const pw_real *b, pw_real *x,
                               PetscInt *iterations, KSPConvergedReason *reason)
 {
@@ -353,4 +347,4 @@ static pw_status solve(void *system, pw_real reduction, const pw_real *b, pw_rea
 }
 
 extern const pw_petsc_module pw_petsc;
-const pw_petsc_module pw_petsc = {PW_PETSC_VERSION, start, create, destroy, load, solve};
+const pw_petsc_module pw_petsc = {PW_PETSC_VERSION, start, create, destroy, load, forget, solve};

@@ -32,6 +32,8 @@ typedef struct pw_petsc_module {
   void (*destroy)(void **system);
   /** @brief Take a matrix and set up its preconditioner. */
   pw_status (*load)(void *system, const pw_csr *m, char *text);
+  /** @brief Keep nothing for matrices to come. */
+  void (*forget)(void *system);
   /** @brief Solve with it; PW_RETRY_DIVERGED when iterations do not converge. */
   pw_status (*solve)(void *system, pw_real reduction, const pw_real *b, pw_real *x, int *iterations,
                      char *text);
