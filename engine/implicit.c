@@ -175,19 +175,30 @@ void pw_implicit_destroy(pw_implicit **simulation)
   pw_mem_free(simulation);
 }
 
+/* Whole load steps are counted exactly. */
+static pw_real snapped(pw_real t)
+{
+  return fabs(t - round(t)) < 1e-9 ? round(t) : t;
+}
+
+/* Load steps done at t of the present one. */
+static pw_real time_at(const pw_implicit *sim, pw_real t)
+{
+  return t >= 1.0 ? snapped(sim->now + sim->size) : sim->now + sim->size * t;
+}
+
 /* ---- the load step ---- */
 
 static void apply(void *ctx, pw_tet_model *m, pw_real t0, pw_real t1)
 {
   pw_implicit *sim = ctx;
   const size_t bytes = 3 * (size_t)m->mesh->tets.nnode * sizeof(pw_real);
-  const pw_real start = sim->now, size = sim->size;
   memset(m->prescribed, 0, bytes);
   memset(m->external, 0, bytes);
   for (int k = 0; k < sim->neffect; k++) {
     const pw_solid_hooks *hooks = sim->effect[k].type->solid;
     if (hooks->apply) {
-      hooks->apply(sim, sim->effect[k].ctx, start + size * t0, start + size * t1);
+      hooks->apply(sim, sim->effect[k].ctx, time_at(sim, t0), time_at(sim, t1));
     }
   }
 }
@@ -196,7 +207,7 @@ static void converged(void *ctx, pw_tet_model *m, pw_real t1)
 {
   pw_implicit *sim = ctx;
   const pw_walk_counts *w = &m->walked;
-  const pw_real to = sim->now + sim->size * t1;
+  const pw_real to = time_at(sim, t1);
   sim->equations = m->csr.n;
   sim->walked.points += w->points;
   sim->walked.tests += w->tests;
@@ -214,7 +225,7 @@ static void converged(void *ctx, pw_tet_model *m, pw_real t1)
 static pw_status move(void *ctx, pw_tet_model *m, pw_real t1)
 {
   pw_implicit *sim = ctx;
-  const pw_real to = sim->now + sim->size * t1;
+  const pw_real to = time_at(sim, t1);
   (void)m;
   for (int k = 0; k < sim->neffect; k++) {
     const pw_solid_hooks *hooks = sim->effect[k].type->solid;
@@ -272,12 +283,6 @@ static void choose_next(pw_implicit *sim)
   }
 }
 
-/* Whole load steps are counted exactly. */
-static pw_real snapped(pw_real t)
-{
-  return fabs(t - round(t)) < 1e-9 ? round(t) : t;
-}
-
 pw_status pw_implicit_advance(pw_implicit *sim, pw_real limit_s)
 {
   const pw_scene_implicit *p = &sim->scene.solid.implicit;
@@ -296,7 +301,7 @@ pw_status pw_implicit_advance(pw_implicit *sim, pw_real limit_s)
   sim->parts += sim->report.parts;
   if (s == PW_OK) {
     sim->step++;
-    sim->now = snapped(sim->now + sim->size);
+    sim->now = time_at(sim, 1.0);
     choose_next(sim);
   }
   note_mechanisms(sim);

@@ -297,7 +297,7 @@ pw_status pw_newton_solve_part(pw_newton *n, const pw_newton_load *load, const p
 {
   report->count = 0;
   const pw_status s = solve_in_one(n, load, t, report);
-  if (s <= 0 || n->options.approach == 0 || dynamic(n)) {
+  if (s <= 0 || n->options.approach == 0 || dynamic(n) || load->move) {
     return s;
   }
   PW_TRY(approach(n, load, t, report));

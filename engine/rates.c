@@ -270,8 +270,10 @@ static pw_idx level_for(const pw_sim *sim, pw_idx block, pw_idx first)
   const pw_rates *r = sim->rates;
   const pw_real rate = signal_rate(sim, block);
   const pw_idx now = steps_of(r->first, r->level[block]);
+  /* Points are about to change blocks; an empty block does not know who comes. */
+  const bool settled = !sim->sort_needed && sim->blocks.share_size[block] > 0;
   pw_idx level = 0;
-  while (level < r->levels && !r->pinned[block]) {
+  while (level < r->levels && !r->pinned[block] && settled) {
     const pw_idx steps = steps_of(first, level + 1);
     const pw_real step = sim->dt_next * (pw_real)steps, part = steps <= now ? 1.0 : RISE;
     if (steps > sim->scene.method.step_ratio_max || step > sim->scene.time.dt_max_s ||

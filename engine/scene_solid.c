@@ -70,7 +70,8 @@ const pw_key pw_scene_keys_implicit[] = {
   {"max_cuts", PW_KEY_INT, AT(implicit.max_cuts), 0, 40, "10", NULL, NULL,
    "halvings of a step in a row after which the run fails"},
   {"approach", PW_KEY_INT, AT(implicit.approach), 0, 20, "4", NULL, NULL,
-   "halvings of the way to a step that fails, tried before it is cut; 0: it is cut at once"},
+   "halvings of the way to a step that fails on a mesh that is put back, tried before it is cut; "
+   "0: it is cut at once"},
   {"cut_driven", PW_KEY_BOOL, AT(implicit.cut_driven), 0, 0, "false", NULL, NULL,
    "cut steps also where nodes are driven and the mesh is put back in between"},
   {"line_search", PW_KEY_INT, AT(implicit.line_search), 0, 20, "0", NULL, NULL,

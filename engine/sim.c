@@ -391,6 +391,9 @@ static int plan_cycle(pw_sim *sim, pw_real dt_limit)
   return n;
 }
 
+/* A cycle ends early when the step it was made for has become too long by this part. */
+static const pw_real SHORTER = 0.9;
+
 static pw_status make_cycle(pw_sim *sim, int n)
 {
   bool together = false;
@@ -399,7 +402,8 @@ static pw_status make_cycle(pw_sim *sim, int n)
     PW_TRY(pw_step_explicit(sim));
     sim->dt_min = sim->step <= 1 ? sim->dt : pw_min(sim->dt_min, sim->dt);
     sim->dt_max = pw_max(sim->dt_max, sim->dt);
-    together = sim->sort_needed;
+    together = sim->sort_needed || sim->dt_next < SHORTER * sim->dt ||
+               (sim->dt_contact > 0.0 && sim->dt_contact < SHORTER * sim->dt);
     if (together && !pw_rates_together(sim)) {
       PW_TRY(pw_rates_join(sim));
     }

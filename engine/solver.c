@@ -169,6 +169,7 @@ pw_status pw_solver_solve(pw_solver *s, const pw_csr *m, const pw_real *b, pw_re
 
 void pw_solver_forget(pw_solver *s)
 {
+  s->unlucky = false;
   if (s->calls) {
     s->calls->forget(s->state);
   }

@@ -13,9 +13,10 @@
  *
  * and the last part, with alpha = 1, restores balance. In a dynamic step inertia takes R0 up.
  *
- * A part that does not converge is first approached: the same equations are solved for s = 1/2,
- * 1/4, ... of its load, each from the solution before, until s = 1. Nothing is committed on the way,
- * so the result is that of the part in one piece. Only when that fails too is the part cut. A cut
+ * A part that does not converge is cut where the mesh moves along. Where the mesh is put back it is
+ * first approached: the same equations are solved for s = 1/2, 1/4, ... of its load, each from the
+ * solution before, until s = 1. Nothing is committed on the way, so the result is that of the part in
+ * one piece. Only when that fails too is the part cut. A cut
  * puts the mesh back in between, which changes what a driven boundary is tied to unless the mesh
  * moves along: without load->move a part whose nodes are driven is not cut unless asked for.
  *

@@ -83,11 +83,12 @@ void pw_tet_rates_start(pw_tet_model *m, pw_tet_rates *r)
   const bool again = r->open; /* the part before has failed: v and a are its own */
   pw_tet_model_masses(m);
   r->open = true;
+  if (again) { /* v0 and a0 are still those of the start */
+    return;
+  }
   if (r->method.keep && r->begun) {
-    if (!again) {
-      memcpy(r->v0, r->v, n * sizeof *r->v);
-      memcpy(r->a0, r->a, n * sizeof *r->a);
-    }
+    memcpy(r->v0, r->v, n * sizeof *r->v);
+    memcpy(r->a0, r->a, n * sizeof *r->a);
     return;
   }
   map_to_nodes(m, r);
@@ -112,6 +113,10 @@ void pw_tet_rates_update(pw_tet_model *m, pw_tet_rates *r, const pw_real *u, pw_
   const pw_newmark *k = &r->method;
   const pw_real push = 1.0 / (k->beta * dt * dt);
   for (size_t i = 0; i < n; i++) {
+    if (m->fixed[i] && !k->keep) { /* it moves as it is told; rates of points would be reflected */
+      r->v0[i] = u[i] / dt;
+      r->a0[i] = 0.0;
+    }
     r->a[i] = push * (u[i] - dt * r->v0[i]) - (0.5 / k->beta - 1.0) * r->a0[i];
     r->v[i] = r->v0[i] + dt * ((1.0 - k->gamma) * r->a0[i] + k->gamma * r->a[i]);
     m->inertia.rate[i] = r->a[i] + k->damping * r->v[i];

@@ -125,4 +125,11 @@ void pw_tet_model_volumes(const pw_tet_model *m, const pw_real *u, pw_real *rati
  *  state. */
 void pw_tet_model_commit(pw_tet_model *m, const pw_real *u);
 
+/** @brief Reaction at component @p at of [3][nnode] after an evaluation, inertia and damping
+ *  included; N. */
+static inline pw_real pw_tet_model_reaction(const pw_tet_model *m, size_t at)
+{
+  return m->force[at] + (m->inertia.on ? m->inertia.force[at] : 0.0) - m->external[at];
+}
+
 #endif /* PW_ENGINE_TET_MODEL_H */

@@ -78,6 +78,9 @@ static pw_status time_iteration(pw_implicit *sim, pw_real *wall, pw_solver_count
   pw_solver_options options = pw_solver_defaults(pw_tet_model_is_symmetric(m));
   options.engine = (pw_solver_engine)sim->scene.solid.implicit.solver;
   options.x = m->mesh->x;
+  if (sim->scene.solid.implicit.mechanisms != PW_MECHANISMS_ERROR) {
+    options.least_pivot = 0.0; /* as in a step */
+  }
   s = s == PW_OK ? pw_solver_create(&options, &solver) : s;
   pw_real start = 0.0;
   for (int k = 0; k < 2 && s == PW_OK; k++) { /* the first time analyses the pattern */

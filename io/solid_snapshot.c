@@ -136,7 +136,7 @@ static void add_reactions(table *t, const pw_tet_model *m, pw_idx n)
   for (pw_off i = 0; values && i < n; i++) {
     for (int c = 0; c < 3; c++) {
       const pw_off at = (pw_off)c * n + i;
-      values[3 * i + c] = m->fixed[at] ? (float)(m->force[at] - m->external[at]) : 0.0f;
+      values[3 * i + c] = m->fixed[at] ? (float)pw_tet_model_reaction(m, (size_t)at) : 0.0f;
     }
   }
 }

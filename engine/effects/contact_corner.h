@@ -35,6 +35,7 @@ typedef struct pw_corner_pair {
   pw_real relax;     /**< part of the stretch that a growth of the stiffness leaves; - */
   pw_real rate;      /**< square of its frequency, from above; 1/s2 */
   pw_real force[2];  /**< on the site; N */
+  pw_real lost;      /**< energy left out with stiffness that the step cannot resolve; J */
 } pw_corner_pair;
 
 /** Sums and extremes of the sites of a block. */

@@ -89,6 +89,7 @@ static void push(pw_corner *c, pw_corner_pair *q, pw_corner_sums *sums)
   for (int k = 0; k < 2; k++) {
     q->force[k] = normal * q->place.n[k] + shear * q->place.t[k];
   }
+  sums->dissipated += q->lost;
   sums->spring += pw_spring_energy(q->stiffness, q->overlap) +
                   pw_spring_energy(q->stiffness, p->contact_slip[at]);
   pw_domain_now d = pw_domain_of(p, q->point, c->surface.line->axi);

@@ -164,6 +164,7 @@ static void soften(pw_corner *c, pw_corner_pair *q, pw_real part)
     p->contact_arc[at] = PW_CORNER_WAITING;
     return;
   }
+  q->lost = q->fresh ? 0.0 : (1.0 - part) * pw_spring_energy(q->stiffness, q->overlap);
   q->stiffness *= part;
   q->density *= part;
 }

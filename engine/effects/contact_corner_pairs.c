@@ -79,6 +79,7 @@ static void find_site(pw_corner *c, pw_idx i, const pw_domain_now *d, int site, 
     pw_idx cell = near_cell(c, i, site, x);
     if (cell < 0 || !pw_round_line_near(&c->surface, x, cell, c->sim->mesh.cell, &place) ||
         place.gap >= c->param->adhesion_gap_m) {
+      p->contact_arc[at] = -1.0; /* one that waited has gone */
       return;
     }
   }

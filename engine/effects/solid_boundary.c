@@ -120,7 +120,7 @@ static void moved(pw_implicit *sim, void *ctx, pw_real to)
     pw_real force[3], arm[3];
     for (size_t c = 0; c < 3; c++) {
       const size_t at = c * nnode + (size_t)b->node[i];
-      force[c] = b->held[i] >> c & 1 ? m->force[at] - m->external[at] : 0.0;
+      force[c] = b->held[i] >> c & 1 ? pw_tet_model_reaction(m, at) : 0.0;
       arm[c] = sim->mesh.x[at] + u[at] - sim->centre[c];
       b->reaction[c] += force[c];
     }

@@ -150,7 +150,7 @@ static void moved(pw_implicit *sim, void *ctx, pw_real to)
     pw_real force[3], arm[3];
     for (size_t c = 0; c < 3; c++) {
       const size_t at = c * nnode + (size_t)d->node[i];
-      force[c] = m->force[at] - m->external[at];
+      force[c] = pw_tet_model_reaction(m, at);
       arm[c] = sim->mesh.x[at] + u[at] - sim->centre[c];
       d->force[c] += force[c];
     }

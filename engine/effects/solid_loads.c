@@ -19,7 +19,7 @@ static const pw_key traction_keys[] = {
   {"group", PW_KEY_TEXT, AT(group), 0, 0, NULL, NULL, NULL,
    "surface of the mesh, or side of a box, that is loaded"},
   {"kind", PW_KEY_CHOICE, AT(kind), 0, 0, "pressure", "pressure|traction|force", NULL,
-   "a pressure onto the surface, a traction, or a force spread evenly over it"},
+   "a pressure onto the surface, a traction, or a force spread evenly; on cells that bodies fill"},
   {"pressure_pa", PW_KEY_REAL, AT(pressure_pa), -1e15, 1e15, NULL, NULL, "kind=pressure",
    "pressure in the end, onto the body"},
   {"traction_pa", PW_KEY_TRIPLE, AT(traction_pa), -1e15, 1e15, NULL, NULL, "kind=traction",
@@ -131,32 +131,64 @@ static pw_idx place_of(const pw_solid_group *g, pw_idx node)
   return low;
 }
 
-static pw_status spread(const pw_implicit *sim, const pw_solid_mesh *mesh, const pw_solid_group *g,
-                        load *l)
+/* Where a traction acts. */
+typedef struct surface {
+  uint8_t *filled; /* [npatch] 1: a cell with points; forces on others would act on nothing */
+  pw_idx *face;    /* [faces of the group] 4 e + f, or -1 */
+  pw_real area;    /* m2 */
+} surface;
+
+static void find_filled(const pw_implicit *sim, uint8_t *filled)
 {
-  pw_real whole = 0.0, area[3];
-  for (pw_idx k = 0; k < g->nface; k++) {
-    area_of(mesh, g->face + 3 * k, area);
-    whole += sqrt(area[0] * area[0] + area[1] * area[1] + area[2] * area[2]);
+  const pw_tet_points *q = &sim->model.points;
+  for (pw_idx i = 0; i < q->n; i++) {
+    filled[q->elem[i] / sim->mesh.per] = 1;
   }
+}
+
+/* The boundary faces of the group that belong to cells with points, -1 for the others, and their
+ * whole area. */
+static pw_status find_faces(const pw_implicit *sim, const pw_solid_mesh *mesh,
+                            const pw_solid_group *g, const load *l, surface *out)
+{
+  find_filled(sim, out->filled);
+  out->area = 0.0;
   for (pw_idx k = 0; k < g->nface; k++) {
-    pw_real force[3];
+    pw_real area[3];
     const pw_idx face = boundary_face(&sim->mesh.tets, g->face + 3 * k);
     PW_REQUIRE(face >= 0, PW_ERR_SCENE,
                "traction.%d.group: the surface '%s' does not lie on the boundary of the mesh",
                l->number, g->name);
+    const bool loaded = out->filled[face / 4 / sim->mesh.per];
+    area_of(mesh, g->face + 3 * k, area);
+    out->face[k] = loaded ? face : -1;
+    out->area += loaded ? sqrt(area[0] * area[0] + area[1] * area[1] + area[2] * area[2]) : 0.0;
+  }
+  PW_REQUIRE(out->area > 0.0, PW_ERR_SCENE,
+             "traction.%d.group: no body fills the cells at the surface '%s'", l->number, g->name);
+  return PW_OK;
+}
+
+static void spread(const pw_implicit *sim, const pw_solid_mesh *mesh, const pw_solid_group *g,
+                   const surface *on, load *l)
+{
+  for (pw_idx k = 0; k < g->nface; k++) {
+    const pw_idx face = on->face[k];
+    pw_real force[3], area[3];
     pw_idx outward[3];
+    if (face < 0) {
+      continue;
+    }
     for (int i = 0; i < 3; i++) {
       outward[i] = sim->mesh.tets.node[4 * (face / 4) + pw_tet_face[face % 4][i]];
     }
     area_of(mesh, outward, area);
-    force_of(l->param, area, whole, force);
+    force_of(l->param, area, on->area, force);
     for (int i = 0; i < 9; i++) {
       l->force[3 * place_of(g, outward[i / 3]) + i % 3] += force[i % 3] / 3.0;
       l->sum[i % 3] += force[i % 3] / 3.0;
     }
   }
-  return PW_OK;
 }
 
 static pw_status create_traction(pw_implicit *sim, const pw_solid_mesh *mesh, const void *param,
@@ -180,7 +212,18 @@ static pw_status create_traction(pw_implicit *sim, const pw_solid_mesh *mesh, co
   for (pw_idx i = 0; i < l->n; i++) {
     l->node[i] = g->node[i];
   }
-  return spread(sim, mesh, g, l);
+  surface on = {.area = 0.0};
+  pw_status status =
+      pw_mem_alloc("traction: filled cells", sim->mesh.npatch, sizeof *on.filled, &on.filled);
+  status = status == PW_OK ? pw_mem_alloc("traction: faces", g->nface, sizeof *on.face, &on.face)
+                           : status;
+  status = status == PW_OK ? find_faces(sim, mesh, g, l, &on) : status;
+  if (status == PW_OK) {
+    spread(sim, mesh, g, &on, l);
+  }
+  pw_mem_free(&on.filled);
+  pw_mem_free(&on.face);
+  return status;
 }
 
 static void apply_traction(pw_implicit *sim, void *ctx, pw_real from, pw_real to)
