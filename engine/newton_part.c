@@ -173,7 +173,7 @@ static pw_status start_part(pw_newton *n, const pw_newton_load *load, const pw_r
     return predict(n);
   }
   for (size_t i = 0; i < n->dofs; i++) {
-    n->u[i] = m->equation[i] >= 0 ? (t[1] - t[0]) * n->previous[i] : 0.0;
+    n->u[i] = m->equation[i] >= 0 ? m->dt * n->previous[i] : 0.0;
   }
   prescribe(n);
   return PW_OK;

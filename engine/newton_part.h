@@ -14,7 +14,7 @@ struct pw_newton {
   pw_solver *solver;
   size_t dofs;       /* 3 nnode */
   pw_real *u;        /* [3][nnode] displacement over the part at hand */
-  pw_real *previous; /* [3][nnode] displacement over the part before, per unit of t */
+  pw_real *previous; /* [3][nnode] displacement over the part before, per second of it; m/s */
   bool has_previous;
   pw_real *rest;          /* [3][nnode] R0 of the part, where it is known */
   pw_real *unbalanced;    /* [3][nnode] R0 times 1 - alpha */

@@ -142,7 +142,7 @@ static pw_status finish_part(pw_newton *n, const pw_newton_load *load, const pw_
   }
   pw_tet_model_commit(n->model, n->u);
   for (size_t i = 0; i < n->dofs; i++) {
-    n->previous[i] = n->u[i] / (t[1] - t[0]);
+    n->previous[i] = n->u[i] / n->model->dt; /* the next step may be longer */
   }
   n->has_previous = true;
   if (load->converged) {

@@ -66,7 +66,8 @@ static void print_sizes(const pw_implicit *sim, FILE *out)
 }
 
 /* Wall clock of one iteration with the tangent of the start; < 0: it cannot be factored. */
-static pw_status time_iteration(pw_implicit *sim, pw_real *wall, pw_solver_counts *counts)
+static pw_status time_iteration(pw_implicit *sim, pw_real *wall, pw_solver_counts *counts,
+                                char *solver_text, size_t size)
 {
   pw_tet_model *m = &sim->model;
   pw_real *zero = NULL, *x = NULL;
@@ -92,6 +93,7 @@ static pw_status time_iteration(pw_implicit *sim, pw_real *wall, pw_solver_count
   *wall = pw_wall_clock() - start;
   if (solver) {
     *counts = pw_solver_counted(solver);
+    snprintf(solver_text, size, "%s", pw_solver_describe(solver));
   }
   pw_solver_destroy(&solver);
   pw_mem_free(&zero);
@@ -103,12 +105,12 @@ static void print_estimate(pw_implicit *sim, FILE *out)
 {
   pw_real wall = 0.0;
   pw_solver_counts counts = {0};
-  char text[32];
-  pw_status s = time_iteration(sim, &wall, &counts);
+  char text[32], solver_text[256] = "";
+  pw_status s = time_iteration(sim, &wall, &counts, solver_text, sizeof solver_text);
   pw_implicit_report r;
   pw_implicit_report_now(sim, &r);
   fprintf(out, "matrix       %d equations, %lld nonzeros, %s\n", sim->model.csr.n,
-          (long long)r.nonzeros, r.solver_text);
+          (long long)r.nonzeros, solver_text);
   fprintf(out, "memory       %.1f MiB without the solver\n", (pw_real)pw_mem_bytes() / 1048576.0);
   if (s != PW_OK) {
     fprintf(out, "start        the tangent cannot be factored: %s\n", pw_error_text());
