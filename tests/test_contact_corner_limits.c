@@ -88,23 +88,61 @@ static void overlap_is_pressure_over_stiffness(void **state)
   }
 }
 
+static pw_real result_of(const pw_sim *sim, const char *name)
+{
+  static pw_record r;
+  pw_sim_results(sim, &r);
+  for (int k = 0; k < r.n; k++) {
+    if (strcmp(r.item[k].name, name) == 0) {
+      return r.item[k].value;
+    }
+  }
+  fail_msg("no %s among the results", name);
+  return 0.0;
+}
+
 /* The factor's default is relative to the present modulus: for a linear elastic block constant. */
 static void stiffness_is_stated(void **state)
 {
   (void)state;
-  static pw_record r;
   pw_scene *s = block(false, 0.0, 0.5);
   pw_sim *sim = test_sim(s, 1);
   test_run_to(sim, 0.02);
-  pw_sim_results(sim, &r);
-  for (int k = 0; k < r.n; k++) {
-    if (strcmp(r.item[k].name, "contact_stiffness_max_pa_m") == 0) {
-      assert_relative(r.item[k].value, 0.2 * YOUNGS / 0.0625, 0.05);
-      pw_sim_destroy(&sim);
-      return;
-    }
-  }
-  fail_msg("no stiffness among the results");
+  assert_relative(result_of(sim, "contact_stiffness_max_pa_m"), 0.2 * YOUNGS / 0.0625, 0.05);
+  pw_sim_destroy(&sim);
+}
+
+/* Clay 440 times as soft in its upper half as at its foot meets a wall: the soft part is held by a
+ * fiftieth of the stiffness at the foot, as the key says, not by a 440th. */
+static void soft_soil_is_held_by_a_fiftieth_of_the_stiffest(void **state)
+{
+  (void)state;
+  const pw_real strength = 100.0, gradient = 1e5, rigidity = 100.0;
+  static pw_scene s; /* large */
+  pw_scene_default(&s);
+  s.geometry = PW_PLANE;
+  test_grid(&s, (pw_real[]){-0.5, 1.0, 0.0, 1.0}, 0.25);
+  int clay = test_material(&s, "tresca");
+  test_param(&s, clay, "undrained_shear_strength_pa", strength);
+  test_param(&s, clay, "undrained_shear_strength_gradient_pa_m", gradient);
+  test_param(&s, clay, "rigidity_index", rigidity);
+  test_param(&s, clay, "poisson_ratio", 0.25);
+  test_param(&s, clay, "density_kg_m3", DENSITY);
+  test_param(&s, clay, "reference_y_m", 0.5);
+  test_rectangle(&s, clay, (pw_real[]){-0.5, 0.0, 0.0, 1.0}, 0.125);
+  test_rectangle(&s, clay, (pw_real[]){0.0, 0.5, 0.0, 1.0}, 0.125);
+  s.body[0].kind = PW_BODY_RIGID;
+  s.body[1].velocity_m_s[0] = -0.001;
+  test_add_contact(&s, TEST_CORNER, 0, 1, 0.0, 0.0, 0.0);
+  test_hold(&s, 0);
+  pw_sim *sim = test_sim(&s, 1);
+  test_run_to(sim, 0.01);
+  const pw_real shear =
+      rigidity * (strength + gradient * (0.5 - 0.0625)); /* at the lowest points */
+  const pw_real modulus = 3.0 * shear;                   /* K + 4 G / 3 with a ratio of 0.25 */
+  assert_relative(result_of(sim, "contact_stiffness_max_pa_m"), 0.2 * modulus / 0.0625, 1e-3);
+  assert_relative(result_of(sim, "contact_stiffness_min_pa_m"), 0.004 * modulus / 0.0625, 1e-3);
+  pw_sim_destroy(&sim);
 }
 
 /* As the test of the same name for interface lines; 1.6 and 3.2 segments, up to 1.6 domains. */
@@ -290,6 +328,7 @@ int main(void)
       cmocka_unit_test(without_friction_nothing_pulls_along),
       cmocka_unit_test(overlap_is_pressure_over_stiffness),
       cmocka_unit_test(stiffness_is_stated),
+      cmocka_unit_test(soft_soil_is_held_by_a_fiftieth_of_the_stiffest),
       cmocka_unit_test(overlap_at_rest_stays_at_rest),
       cmocka_unit_test(leaves_no_faster_than_it_came),
       cmocka_unit_test(strength_limits_the_shear),

@@ -36,7 +36,8 @@ static const pw_key keys[] = {
   {"shear_limit_pa", PW_KEY_REAL, AT(shear_limit_pa), 0, 1e15, "0", NULL, NULL,
    "largest shear stress of the interface; 0: no limit"},
   {"stiffness_factor", PW_KEY_REAL, AT(stiffness_factor), PW_TINY, 1e6, "0.2", NULL, NULL,
-   "stiffness as a part of density times squared wave speed over half a domain"},
+   "stiffness as a part of density times squared wave speed over half a domain; soil softer than a "
+   "fiftieth of the stiffest in contact counts as that"},
   {"normal_stiffness_pa_m", PW_KEY_REAL, AT(normal_stiffness_pa_m), 0, 1e20, "0", NULL, NULL,
    "contact pressure per metre of overlap; 0: by stiffness_factor from the present wave speed"},
   {"segment_m", PW_KEY_REAL, AT(segment_m), 0, 1e6, "0", NULL, NULL,

@@ -47,6 +47,7 @@ typedef struct pw_corner_sums {
   pw_real deepest;            /**< of a site, >= 0; m */
   pw_real centre;             /**< of a point's centre, >= 0; m */
   pw_real softest, stiffest;  /**< stiffness per area; Pa/m */
+  pw_real modulus;            /**< largest of the points found: density times squared speed; Pa */
   pw_real offset;             /**< largest part of a gap without force; m */
   char pad[PW_ALIGN];         /* neighbours in the array belong to other threads */
 } pw_corner_sums;
@@ -71,7 +72,8 @@ typedef struct pw_corner {
   pw_real *stiffness;   /**< [nnode] sums at nodes; zero but within pw_corner_limit */
   /* Of the present step: */
   pw_real *slave_rec, *master_rec;
-  bool given; /**< the master's motion is prescribed */
+  bool given;            /**< the master's motion is prescribed */
+  pw_real slave_modulus; /**< largest density times squared wave speed in contact; Pa */
   /* Of the run: */
   pw_real last_dt;           /**< the last step; s */
   pw_real centre_max;        /**< deepest centre of a point; m */

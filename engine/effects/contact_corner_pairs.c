@@ -12,6 +12,10 @@ static const pw_real EXPLAINED = 1.1;
 static const pw_real WORK_OUT = 0.25;
 /* Part of half a domain that may stay overlapped without force. */
 static const pw_real LEFT = 0.02;
+/* Soil softer than this part of the stiffest in contact is held as if it were that stiff. Soil that
+ * has lost its stress for a moment, under a tip say, would let the master in as far as it is soft,
+ * and come back stiff: overlap that no force explains. The step resolves the stiffest anyway. */
+static const pw_real SOFTEST = 0.02;
 /* Jumps of a site that is held are taken up to this part of half a domain. */
 static const pw_real ABSORBED = 0.15;
 
@@ -88,6 +92,12 @@ static void find_site(pw_corner *c, pw_idx i, const pw_domain_now *d, int site, 
   sums->count++;
 }
 
+/* Density times squared wave speed; Pa. */
+static pw_real modulus_of(const pw_points *p, pw_idx i)
+{
+  return p->mass[i] / p->vol[i] * p->wave_speed[i] * p->wave_speed[i];
+}
+
 static void find_in_block(void *ctx, pw_idx block)
 {
   pw_corner *c = ctx;
@@ -99,8 +109,12 @@ static void find_in_block(void *ctx, pw_idx block)
   }
   for (pw_idx i = first; i < last; i++) {
     pw_domain_now d = pw_domain_of(&c->sim->points, i, c->surface.line->axi);
+    const pw_idx before = sums->count;
     for (int site = 0; site < PW_SITES; site++) {
       find_site(c, i, &d, site, PW_SITES * first, sums);
+    }
+    if (sums->count > before) {
+      sums->modulus = pw_max(sums->modulus, modulus_of(&c->sim->points, i));
     }
   }
 }
@@ -113,7 +127,7 @@ static pw_real stiffness_of(const pw_corner *c, const pw_domain_now *d)
   if (c->param->normal_stiffness_pa_m > 0.0) {
     return c->param->normal_stiffness_pa_m;
   }
-  pw_real modulus = p->mass[i] / p->vol[i] * p->wave_speed[i] * p->wave_speed[i];
+  pw_real modulus = pw_max(modulus_of(p, i), SOFTEST * c->slave_modulus);
   if (c->master_modulus > 0.0) { /* two springs in series */
     modulus *= c->master_modulus / (modulus + c->master_modulus);
   }
@@ -272,9 +286,11 @@ pw_status pw_corner_search(pw_corner *c)
   }
   pw_for_blocks(&sim->blocks, sim->threads, find_in_block, c);
   c->npair = 0;
+  c->slave_modulus = 0.0;
   for (pw_idx k = 0; k < sim->blocks.nblock; k++) {
     c->sums[k].start = c->npair;
     c->npair += c->sums[k].count;
+    c->slave_modulus = pw_max(c->slave_modulus, c->sums[k].modulus);
   }
   PW_REQUIRE(c->npair <= c->capacity, PW_ERR_MEMORY,
              "%d corners and edges of the slave's domains are inside the master, at most %d can be",
