@@ -4,7 +4,8 @@
  * @brief Simple stretch of a cube: the first example of Wang et al.
  *
  * Cube of edge 2 in five ten-node tetrahedra, E = 1e3, nu = 0, rollers on x = 0, y = 0, z = 0; the
- * face y = 2 moves by 0.4 in every load step, and the mesh is stretched along with it.
+ * face y = 2 moves by 0.4 in every load step, and the mesh is stretched along with it. The body draws
+ * back from the other faces, so that which corner of the cube an element cuts off counts.
  */
 #ifndef PW_TESTS_STRETCH_HELPERS_H
 #define PW_TESTS_STRETCH_HELPERS_H
@@ -19,6 +20,7 @@ typedef struct {
   pw_tet_diagonal diagonal;
   const char *yield; /* key, its value is 400 */
   bool uniform;      /* y of all nodes is prescribed */
+  bool mirrored;     /* rollers on x = 2: the cube's other division into five */
 } stretch_case;
 
 typedef struct {
@@ -66,7 +68,8 @@ static inline void stretch_start(const stretch_case *c, stretch *s)
   const pw_idx n = s->mesh.tets.nnode;
   for (pw_idx i = 0; i < 3 * n; i++) {
     pw_real x = s->mesh.tets.x[i];
-    s->model.fixed[i] = x == 0.0 || (i / n == 1 && (x == 2.0 || c->uniform));
+    pw_real roller = i < n && c->mirrored ? 2.0 : 0.0;
+    s->model.fixed[i] = x == roller || (i / n == 1 && (x == 2.0 || c->uniform));
   }
   pw_newton_options options = pw_newton_defaults();
   assert_ok(pw_newton_create(&s->model, &options, &s->newton));

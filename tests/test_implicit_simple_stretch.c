@@ -3,7 +3,14 @@
  * tau = min(E ln(1 + 0.2 n), tau_y) in step n, with tau_y = sqrt(3/2) 400 when 400 is sqrt(2 J2) at
  * yield and 400 when it is the stress of a uniaxial test; the reaction is tau V0 / L, with V0 = 8 and
  * L the length. Past the largest load (from step 5 on) the perfectly plastic bar may neck; ranges
- * then are those of an independent program on the same mesh. */
+ * then are those of an independent program on the same mesh.
+ *
+ * With F-bar that program has a mean within 0.5 and a range of [487, 492] at step 17. These are figures
+ * of another mean over a patch: with elements weighted by their own volumes instead of that of
+ * their points, pw_patch_move() gives 0.502 and [486.65, 491.53]. Volumes of points, whose forces do
+ * the work of the strains and which count a hardly filled element by what it holds, give 0.605 in
+ * step 10, 0.532 in step 9, less than 0.5 in the others, and [486.39, 492.37]; in the mirrored cube
+ * 0.408 at most. */
 #include "tests/stretch_helpers.h"
 
 static double exact_tau(int step, double yield)
@@ -67,12 +74,15 @@ static void run(stretch_case c, double (*range)[3])
 static void free_nodes_scatter_less_with_fbar(void **state)
 {
   (void)state;
-  static double plain[21][3], barred[21][3], total[21][3];
+  static double plain[21][3], barred[21][3], total[21][3], mirrored[21][3];
   stretch_case c = {.rule = PW_TET_RULE_FOUR, .diagonal = PW_TET_DIAGONAL_ALONG_Y};
   c.yield = "yield_radius_pa";
   run(c, plain);
   c.fbar = PW_FBAR_INCREMENT;
   run(c, barred);
+  c.mirrored = true;
+  run(c, mirrored);
+  c.mirrored = false;
   c.fbar = PW_FBAR_TOTAL;
   run(c, total);
   for (int k = 1; k <= 20; k++) {
@@ -83,8 +93,8 @@ static void free_nodes_scatter_less_with_fbar(void **state)
     }
     if (k >= 5) {
       assert_near(plain[k][0], tau, 2.0);
-      /* The independent program's mean stays within 0.5; here steps 9 and 10 miss that. */
-      assert_near(barred[k][0], tau, k == 9 || k == 10 ? 0.65 : 0.5);
+      assert_near(barred[k][0], tau, k == 9 || k == 10 ? 0.61 : 0.5);
+      assert_near(mirrored[k][0], tau, 0.5);
     }
   }
   print_message("step 17: F %.1f [%.1f, %.1f], F-bar %.1f [%.1f, %.1f], total %.1f [%.1f, %.1f]\n",
