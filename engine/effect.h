@@ -19,6 +19,7 @@ typedef struct pw_solid_hooks pw_solid_hooks; /**< engine/implicit_state.h */
 
 /** Where in a step a hook runs (engine/step_explicit.c). */
 typedef enum pw_stage {
+  PW_STAGE_START,      /**< implicit steps, once: FORCE slots hold what is out of balance; N */
   PW_STAGE_BEGIN,      /**< weights are known, nodes still empty */
   PW_STAGE_P2G,        /**< after the points' scatter: further scatters (own passes) */
   PW_STAGE_NODE_FORCE, /**< add to the nodes' force; momentum and mass are in the records */
@@ -57,6 +58,10 @@ struct pw_effect {
   const pw_key *keys;         /**< offsets into its parameter struct */
   const pw_effect_rows *rows; /**< a list in its section, or NULL */
   const pw_hook *hooks;
+  /** Hooks of implicit steps on the grid (engine/step_implicit.h), NULL: they do not know this
+   *  effect. PW_STAGE_CONSTRAINT there holds nodes, PW_STAGE_NODE_FORCE adds what acts at
+   *  sim->time + sim->dt; both run for every part of a step, and more than once. */
+  const pw_hook *implicit;
   /** @brief Rules across keys; the section's name is added by the caller. May be NULL.
    *  @return PW_OK or PW_ERR_SCENE. */
   pw_status (*check)(const pw_scene *scene, const void *param);

@@ -20,31 +20,52 @@ static pw_status evaluate(pw_newton *n, bool tangent)
   if (dynamic(n)) {
     pw_tet_rates_update(n->model, &n->rates, n->u, n->model->dt);
   }
-  return pw_tet_model_evaluate(n->model, n->u, tangent);
+  return n->system.evaluate(n->system.ctx, n->u, tangent);
+}
+
+static pw_real external_at(const pw_newton_system *m, size_t i)
+{
+  return m->external[i] + (m->follow ? m->follow[i] : 0.0);
+}
+
+static pw_real inertia_at(const pw_newton *n, size_t i)
+{
+  const pw_real *known = dynamic(n) ? n->model->inertia.force : n->system.inertia;
+  return known ? known[i] : 0.0;
+}
+
+/* Loads for the part from t0 to t1, those that follow at the u at hand. */
+static void apply(pw_newton *n, const pw_newton_load *load, pw_real t0, pw_real t1)
+{
+  load->apply(load->ctx, n->model, t0, t1);
+  if (n->system.reload) {
+    n->system.reload(n->system.ctx, n->u);
+  }
 }
 
 /* Right-hand side from what is left at free components, and its norm over that of all loads. */
 static pw_real residual(pw_newton *n)
 {
-  const pw_tet_model *m = n->model;
+  const pw_newton_system *m = &n->system;
   pw_real left = 0.0, load = 0.0;
   for (size_t i = 0; i < n->dofs; i++) {
     const pw_idx eq = m->equation[i];
-    const pw_real inertia = dynamic(n) ? m->inertia.force[i] : 0.0;
+    const pw_real inertia = inertia_at(n, i);
     if (eq >= 0) {
-      const pw_real r = m->external[i] + n->unbalanced[i] - m->force[i] - inertia;
+      const pw_real external = external_at(m, i);
+      const pw_real r = external + n->unbalanced[i] - m->force[i] - inertia;
       n->right[eq] = r;
       left += r * r;
-      load += m->external[i] * m->external[i] + inertia * inertia;
+      load += external * external + inertia * inertia;
     } else if (m->fixed[i]) { /* a reaction */
       load += (m->force[i] + inertia) * (m->force[i] + inertia);
     }
   }
   if (!(load > 0.0)) { /* nothing acts: all that may be left is rounding */
     n->floor = 0.0;
-    return sqrt(left) <= m->rounding ? 0.0 : INFINITY;
+    return sqrt(left) <= *m->rounding ? 0.0 : INFINITY;
   }
-  n->floor = m->rounding / sqrt(load);
+  n->floor = *m->rounding / sqrt(load);
   return sqrt(left / load);
 }
 
@@ -63,18 +84,18 @@ static void aim(pw_newton *n, pw_real tolerance, const pw_newton_report *report)
 /* Solve for the correction of the right-hand side. */
 static pw_status solve(pw_newton *n)
 {
-  const pw_tet_model *m = n->model;
-  if (m->csr.n == 0) {
+  const pw_newton_system *m = &n->system;
+  if (m->csr->n == 0) {
     return PW_OK;
   }
-  PW_TRY(pw_solver_factor(n->solver, &m->csr));
-  return pw_solver_solve(n->solver, &m->csr, n->right, n->delta);
+  PW_TRY(pw_solver_factor(n->solver, m->csr));
+  return pw_solver_solve(n->solver, m->csr, n->right, n->delta);
 }
 
 /* u += part of the correction */
 static void add_correction(pw_newton *n, pw_real part)
 {
-  const pw_tet_model *m = n->model;
+  const pw_newton_system *m = &n->system;
   for (size_t i = 0; i < n->dofs; i++) {
     n->u[i] += m->equation[i] >= 0 ? part * n->delta[m->equation[i]] : 0.0;
   }
@@ -82,7 +103,7 @@ static void add_correction(pw_newton *n, pw_real part)
 
 static void prescribe(pw_newton *n)
 {
-  const pw_tet_model *m = n->model;
+  const pw_newton_system *m = &n->system;
   for (size_t i = 0; i < n->dofs; i++) {
     n->u[i] = m->fixed[i] ? m->prescribed[i] : n->u[i];
   }
@@ -91,7 +112,7 @@ static void prescribe(pw_newton *n)
 /* First guess from the tangent at the start: free nodes follow the prescribed ones linearly. */
 static pw_status predict(pw_newton *n)
 {
-  const pw_tet_model *m = n->model;
+  const pw_newton_system *m = &n->system;
   residual(n);
   for (size_t i = 0; i < n->dofs; i++) {
     if (m->equation[i] >= 0) {
@@ -109,10 +130,10 @@ static pw_status predict(pw_newton *n)
  * values at t0. Leaves the loads of t0 behind. */
 static void find_rest(pw_newton *n, const pw_newton_load *load, pw_real t0)
 {
-  pw_tet_model *m = n->model;
-  load->apply(load->ctx, m, t0, t0);
+  const pw_newton_system *m = &n->system;
+  apply(n, load, t0, t0);
   for (size_t i = 0; i < n->dofs; i++) {
-    n->rest[i] = m->equation[i] >= 0 ? m->force[i] - m->external[i] : 0.0;
+    n->rest[i] = m->equation[i] >= 0 ? m->force[i] - external_at(m, i) : 0.0;
   }
   n->has_rest = true;
 }
@@ -121,7 +142,7 @@ static void find_rest(pw_newton *n, const pw_newton_load *load, pw_real t0)
 static void set_loads(pw_newton *n, const pw_newton_load *load, pw_real t0, pw_real t1)
 {
   const pw_real kept = t1 >= 1.0 ? 0.0 : 1.0 - (t1 - t0) / (1.0 - t0);
-  load->apply(load->ctx, n->model, t0, t1);
+  apply(n, load, t0, t1);
   for (size_t i = 0; i < n->dofs; i++) {
     n->unbalanced[i] = n->has_rest ? kept * n->rest[i] : 0.0;
   }
@@ -151,13 +172,13 @@ static pw_status start_moving(pw_newton *n, const pw_newton_load *load, const pw
  * and the tangent at the start are needed. */
 static pw_status start_part(pw_newton *n, const pw_newton_load *load, const pw_real *t)
 {
-  pw_tet_model *m = n->model;
+  const pw_newton_system *m = &n->system;
   const bool whole = t[1] >= 1.0, guess = n->options.from_previous && n->has_previous;
   const pw_real step = load->step_s > 0.0 ? load->step_s : 1.0;
   memset(n->u, 0, n->dofs * sizeof *n->u);
   n->has_rest = false;
-  m->dt = (t[1] - t[0]) * step;
-  m->time = load->start_s + t[0] * step;
+  *m->dt = (t[1] - t[0]) * step;
+  *m->time = load->start_s + t[0] * step;
   if (dynamic(n)) {
     return start_moving(n, load, t);
   }
@@ -165,7 +186,7 @@ static pw_status start_part(pw_newton *n, const pw_newton_load *load, const pw_r
   if (!whole || !guess) {
     PW_TRY(evaluate(n, !guess));
   }
-  if (!whole) {
+  if (!whole && !m->inertia) { /* inertia takes R0 up */
     find_rest(n, load, t[0]);
     set_loads(n, load, t[0], t[1]);
   }
@@ -173,7 +194,7 @@ static pw_status start_part(pw_newton *n, const pw_newton_load *load, const pw_r
     return predict(n);
   }
   for (size_t i = 0; i < n->dofs; i++) {
-    n->u[i] = m->equation[i] >= 0 ? m->dt * n->previous[i] : 0.0;
+    n->u[i] = m->equation[i] >= 0 ? *m->dt * n->previous[i] : 0.0;
   }
   prescribe(n);
   return PW_OK;
@@ -231,7 +252,7 @@ static pw_status try_part(pw_newton *n, const pw_newton_load *load, const pw_rea
                           pw_real s, pw_newton_report *report)
 {
   const pw_real to = s < 1.0 ? t[0] + s * (t[1] - t[0]) : t[1];
-  n->model->dt = (to - t[0]) * (load->step_s > 0.0 ? load->step_s : 1.0);
+  *n->system.dt = (to - t[0]) * (load->step_s > 0.0 ? load->step_s : 1.0);
   set_loads(n, load, t[0], to);
   if (done > 0.0) {
     for (size_t i = 0; i < n->dofs; i++) {
@@ -278,7 +299,7 @@ static pw_status check_volumes(const pw_newton *n)
 {
   const pw_real limit = n->options.volume_limit;
   pw_real ratio[2];
-  pw_tet_model_volumes(n->model, n->u, ratio);
+  n->system.volumes(n->system.ctx, n->u, ratio);
   PW_REQUIRE(ratio[0] * limit >= 1.0 && ratio[1] <= limit, PW_RETRY_DOMAIN_INVERTED,
              "volumes of elements change by factors from %g to %g", ratio[0], ratio[1]);
   return PW_OK;
@@ -297,7 +318,7 @@ pw_status pw_newton_solve_part(pw_newton *n, const pw_newton_load *load, const p
 {
   report->count = 0;
   const pw_status s = solve_in_one(n, load, t, report);
-  if (s <= 0 || n->options.approach == 0 || dynamic(n) || load->move) {
+  if (s <= 0 || n->options.approach == 0 || dynamic(n) || n->system.inertia || load->move) {
     return s;
   }
   PW_TRY(approach(n, load, t, report));

@@ -57,8 +57,9 @@ const pw_key pw_scene_keys_time[] = {
 const pw_key pw_scene_keys_method[] = {
   {"basis", PW_KEY_CHOICE, AT(method.basis), 0, 0, "cpdi", "linear|ugimp|cpdi", NULL,
    "shape functions of the points: standard MPM, uGIMP or CPDI parallelograms"},
-  {"update", PW_KEY_CHOICE, AT(method.update), 0, 0, "musl", "musl|usl|usf", NULL,
-   "stress update last with remapped velocities, last, or first"},
+  {"update", PW_KEY_CHOICE, AT(method.update), 0, 0, "musl", "musl|usl|usf|implicit", NULL,
+   "explicit steps with the stress update last and remapped velocities, last, or first; or "
+   "quasi-static steps by Newton's method (section implicit)"},
   {"domain_limit_cells", PW_KEY_REAL, AT(method.domain_limit_cells), 0, 100, "1", NULL, NULL,
    "largest half diagonal of a point's domain; 0: no limit"},
   {"domain_aspect_max", PW_KEY_REAL, AT(method.domain_aspect_max), 0, 1e6, "0", NULL, NULL,
@@ -218,6 +219,7 @@ void pw_scene_default(pw_scene *out)
   pw_scene_defaults(pw_scene_keys_method, out);
   pw_scene_defaults(pw_scene_keys_output, out);
   pw_scene_defaults(pw_scene_keys_mesh, out);
+  pw_scene_defaults(pw_scene_keys_grid_implicit, out);
   pw_scene_defaults(pw_scene_keys_implicit, out);
   pw_scene_defaults(pw_scene_keys_solid_output, out);
 }

@@ -19,7 +19,7 @@ typedef struct pw_effect pw_effect;
 
 typedef enum pw_geometry { PW_PLANE, PW_AXI, PW_SOLID } pw_geometry;
 typedef enum pw_basis { PW_LINEAR, PW_UGIMP, PW_CPDI } pw_basis;
-typedef enum pw_update { PW_MUSL, PW_USL, PW_USF } pw_update;
+typedef enum pw_update { PW_MUSL, PW_USL, PW_USF, PW_IMPLICIT } pw_update;
 typedef enum pw_shape { PW_SHAPE_RECTANGLE, PW_SHAPE_DISC, PW_SHAPE_PILE, PW_SHAPE_RING } pw_shape;
 /** How a body is described: by material points, or as a structure (engine/structure.h). */
 typedef enum pw_body_kind { PW_BODY_POINTS, PW_BODY_RIGID, PW_BODY_ROD } pw_body_kind;

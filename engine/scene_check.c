@@ -73,6 +73,16 @@ pw_status pw_scene_check_method(const pw_scene *s)
   return PW_OK;
 }
 
+pw_status pw_scene_check_grid_implicit(const pw_scene *s)
+{
+  const pw_scene_implicit *p = &s->solid.implicit;
+  PW_REQUIRE(p->steps >= 1, PW_ERR_SCENE, "steps: %d", p->steps);
+  PW_REQUIRE(p->easy_iterations < p->hard_iterations, PW_ERR_SCENE,
+             "easy_iterations: %d must be less than hard_iterations = %d", p->easy_iterations,
+             p->hard_iterations);
+  return PW_OK;
+}
+
 pw_status pw_scene_check_output(const pw_scene *s)
 {
   PW_REQUIRE(s->output.picture_x_m[0] <= s->output.picture_x_m[1], PW_ERR_SCENE,
@@ -215,6 +225,11 @@ static pw_status check_sizes(const pw_scene *s, const pw_scene_body *b, const pw
   return PW_OK;
 }
 
+static bool is_implicit(const pw_scene *s)
+{
+  return s->geometry != PW_SOLID && s->method.update == PW_IMPLICIT;
+}
+
 pw_status pw_scene_check_body(const pw_scene *s, int i)
 {
   const pw_scene_body *b = &s->body[i];
@@ -233,6 +248,12 @@ pw_status pw_scene_check_body(const pw_scene *s, int i)
   body_box(s, b, box);
   PW_TRY(check_shape(b));
   PW_TRY(check_inside(s, b, box));
+  PW_REQUIRE(!is_implicit(s) || b->kind == PW_BODY_POINTS, PW_ERR_SCENE,
+             "kind: implicit steps (method.update) know no bodies without points");
+  PW_REQUIRE(!is_implicit(s) || pw_scene_find_effect(s, "dynamics") ||
+                 (b->velocity_m_s[0] == 0.0 && b->velocity_m_s[1] == 0.0),
+             PW_ERR_SCENE,
+             "velocity_m_s: implicit steps (method.update) without dynamics are quasi-static");
   return b->kind == PW_BODY_POINTS ? check_sizes(s, b, box) : pw_structure_check(s, i);
 }
 
@@ -274,6 +295,8 @@ pw_status pw_scene_check_effect(const pw_scene *s, int i)
                PW_ERR_SCENE, "%s and %s exclude each other: a scene has one kind of contact",
                e->type->name, other->name);
   }
+  PW_REQUIRE(!is_implicit(s) || e->type->implicit, PW_ERR_SCENE,
+             "%s: implicit steps (method.update) do not know this effect", e->type->name);
   PW_TRY(check_bodies_of(s, e));
   return e->type->check ? e->type->check(s, e->param) : PW_OK;
 }
@@ -324,6 +347,7 @@ pw_status pw_scene_check(const pw_scene *s)
     PW_TRY(in_section(pw_scene_check_grid(s), "grid", ""));
     PW_TRY(in_section(pw_scene_check_time(s), "time", ""));
     PW_TRY(in_section(pw_scene_check_method(s), "method", ""));
+    PW_TRY(is_implicit(s) ? in_section(pw_scene_check_grid_implicit(s), "implicit", "") : PW_OK);
     PW_TRY(in_section(pw_scene_check_output(s), "output", ""));
   }
   for (int i = 0; i < s->nmaterial; i++) {

@@ -20,6 +20,9 @@ pw_status pw_scene_check_grid(const pw_scene *scene);
 pw_status pw_scene_check_time(const pw_scene *scene);
 pw_status pw_scene_check_method(const pw_scene *scene);
 
+/** @brief `implicit:` of a scene with a grid. */
+pw_status pw_scene_check_grid_implicit(const pw_scene *scene);
+
 /** @brief Windows of the pictures. */
 pw_status pw_scene_check_output(const pw_scene *scene);
 

@@ -73,6 +73,16 @@ static void hash_implicit(uint64_t *hash, const pw_scene_implicit *p)
   pw_hash_bytes(hash, number, sizeof number);
 }
 
+static void hash_sections(uint64_t *hash, const pw_scene *s)
+{
+  if (s->geometry != PW_SOLID) {
+    hash_grid(hash, s);
+  }
+  if (s->geometry == PW_SOLID || s->method.update == PW_IMPLICIT) {
+    hash_implicit(hash, &s->solid.implicit);
+  }
+}
+
 static void hash_solid_body(uint64_t *hash, const pw_scene_body *b)
 {
   pw_hash_bytes(hash, &b->material, sizeof b->material);
@@ -85,11 +95,7 @@ uint64_t pw_scene_hash(const pw_scene *s)
 {
   uint64_t hash = UINT64_C(0xcbf29ce484222325);
   pw_hash_bytes(&hash, &s->geometry, sizeof s->geometry);
-  if (s->geometry == PW_SOLID) {
-    hash_implicit(&hash, &s->solid.implicit);
-  } else {
-    hash_grid(&hash, s);
-  }
+  hash_sections(&hash, s);
   for (int m = 0; m < s->nmaterial; m++) {
     hash_material(&hash, &s->material[m]);
   }

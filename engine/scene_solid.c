@@ -14,6 +14,42 @@
 #define SMALL_M 1e-6
 
 /* clang-format off */
+/* Rows of implicit: that both kinds of scenes have. */
+#define KEYS_OF_LENGTH \
+  {"adaptive", PW_KEY_BOOL, AT(implicit.adaptive), 0, 0, "false", NULL, NULL, \
+   "steps longer or shorter than a load step, as the iterations they take ask for"}, \
+  {"step_least", PW_KEY_REAL, AT(implicit.step_least), 1e-6, 1, "0.01", NULL, "adaptive=true", \
+   "shortest step, in load steps"}, \
+  {"step_most", PW_KEY_REAL, AT(implicit.step_most), 1, 1e6, "10", NULL, "adaptive=true", \
+   "longest step, in load steps; of a solid scene history_every_steps limits it too"}, \
+  {"easy_iterations", PW_KEY_INT, AT(implicit.easy_iterations), 0, 63, "4", NULL, "adaptive=true", \
+   "a step of no more iterations makes the next one 1.5 times as long"}, \
+  {"hard_iterations", PW_KEY_INT, AT(implicit.hard_iterations), 1, 64, "8", NULL, "adaptive=true", \
+   "a step of as many, or one that had to be cut or approached, halves the next one"}
+
+#define KEYS_OF_ITERATION \
+  {"tolerance", PW_KEY_REAL, AT(implicit.tolerance), 1e-15, 0.1, "1e-9", NULL, NULL, \
+   "forces out of balance over reactions and loads, as norms, at which a step has converged"}, \
+  {"max_iterations", PW_KEY_INT, AT(implicit.max_iterations), 1, 64, "20", NULL, NULL, \
+   "Newton iterations after which a step is cut"}, \
+  {"max_cuts", PW_KEY_INT, AT(implicit.max_cuts), 0, 40, "10", NULL, NULL, \
+   "halvings of a step in a row after which the run fails"}, \
+  {"approach", PW_KEY_INT, AT(implicit.approach), 0, 20, "4", NULL, NULL, \
+   "halvings of the way to a step that fails on a mesh that is put back, tried before it is cut; " \
+   "0: it is cut at once"}, \
+  {"cut_driven", PW_KEY_BOOL, AT(implicit.cut_driven), 0, 0, "false", NULL, NULL, \
+   "cut steps also where nodes are driven and the mesh is put back in between"}, \
+  {"line_search", PW_KEY_INT, AT(implicit.line_search), 0, 20, "0", NULL, NULL, \
+   "halvings of a correction that leaves more out of balance; 0: none"}
+
+#define KEYS_OF_SOLVER \
+  {"solver", PW_KEY_CHOICE, AT(implicit.solver), 0, 0, "automatic", \
+   "automatic|direct|krylov|petsc_gamg|petsc_ilu", NULL, \
+   "linear solver: factorisation, Krylov with a factor kept for several matrices, or PETSc's; " \
+   "automatic: by the number of equations"}, \
+  {"from_previous", PW_KEY_BOOL, AT(implicit.from_previous), 0, 0, "true", NULL, NULL, \
+   "start the iteration from the displacement of the step before"}
+
 const pw_key pw_scene_keys_mesh[] = {
   {"kind", PW_KEY_CHOICE, AT(mesh.kind), 0, 0, "box", "box|file", NULL,
    "a box of equal bricks with groups x_min, x_max, y_min, y_max, z_min, z_max, or a file of gmsh's"},
@@ -44,16 +80,7 @@ const pw_key pw_scene_keys_implicit[] = {
    "load steps of the run"},
   {"step_s", PW_KEY_REAL, AT(implicit.step_s), PW_TINY, 1e12, "1", NULL, NULL,
    "time of a load step"},
-  {"adaptive", PW_KEY_BOOL, AT(implicit.adaptive), 0, 0, "false", NULL, NULL,
-   "steps longer or shorter than a load step, as the iterations they take ask for"},
-  {"step_least", PW_KEY_REAL, AT(implicit.step_least), 1e-6, 1, "0.01", NULL, "adaptive=true",
-   "shortest step, in load steps"},
-  {"step_most", PW_KEY_REAL, AT(implicit.step_most), 1, 1e6, "10", NULL, "adaptive=true",
-   "longest step, in load steps; outputs are met, so that history_every_steps limits it too"},
-  {"easy_iterations", PW_KEY_INT, AT(implicit.easy_iterations), 0, 63, "4", NULL, "adaptive=true",
-   "a step of no more iterations makes the next one 1.5 times as long"},
-  {"hard_iterations", PW_KEY_INT, AT(implicit.hard_iterations), 1, 64, "8", NULL, "adaptive=true",
-   "a step of as many, or one that had to be cut or approached, halves the next one"},
+  KEYS_OF_LENGTH,
   {"fbar", PW_KEY_CHOICE, AT(implicit.fbar), 0, 0, "increment", "none|increment|total", NULL,
    "volume change averaged over patches: not, over the step, or since the beginning"},
   {"point_rule", PW_KEY_CHOICE, AT(implicit.point_rule), 0, 0, "four",
@@ -63,27 +90,18 @@ const pw_key pw_scene_keys_implicit[] = {
    "apply the rule in every element, or once in every ten-node tetrahedron"},
   {"negative_volumes", PW_KEY_BOOL, AT(implicit.negative_volumes), 0, 0, "false", NULL, NULL,
    "accept a rule that gives points negative volumes (eleven_keast)"},
-  {"tolerance", PW_KEY_REAL, AT(implicit.tolerance), 1e-15, 0.1, "1e-9", NULL, NULL,
-   "forces out of balance over reactions and loads, as norms, at which a step has converged"},
-  {"max_iterations", PW_KEY_INT, AT(implicit.max_iterations), 1, 64, "20", NULL, NULL,
-   "Newton iterations after which a step is cut"},
-  {"max_cuts", PW_KEY_INT, AT(implicit.max_cuts), 0, 40, "10", NULL, NULL,
-   "halvings of a step in a row after which the run fails"},
-  {"approach", PW_KEY_INT, AT(implicit.approach), 0, 20, "4", NULL, NULL,
-   "halvings of the way to a step that fails on a mesh that is put back, tried before it is cut; "
-   "0: it is cut at once"},
-  {"cut_driven", PW_KEY_BOOL, AT(implicit.cut_driven), 0, 0, "false", NULL, NULL,
-   "cut steps also where nodes are driven and the mesh is put back in between"},
-  {"line_search", PW_KEY_INT, AT(implicit.line_search), 0, 20, "0", NULL, NULL,
-   "halvings of a correction that leaves more out of balance; 0: none"},
+  KEYS_OF_ITERATION,
   {"mechanisms", PW_KEY_CHOICE, AT(implicit.mechanisms), 0, 0, "warn", "ignore|warn|error", NULL,
    "what to do when pieces of the body are held by nothing"},
-  {"solver", PW_KEY_CHOICE, AT(implicit.solver), 0, 0, "automatic",
-   "automatic|direct|krylov|petsc_gamg|petsc_ilu", NULL,
-   "linear solver: factorisation, Krylov with a factor kept for several matrices, or PETSc's; "
-   "automatic: by the number of equations"},
-  {"from_previous", PW_KEY_BOOL, AT(implicit.from_previous), 0, 0, "true", NULL, NULL,
-   "start the iteration from the displacement of the step before"},
+  KEYS_OF_SOLVER,
+  {0}};
+
+const pw_key pw_scene_keys_grid_implicit[] = {
+  {"steps", PW_KEY_INT, AT(implicit.steps), 1, 1e6, "20", NULL, NULL,
+   "load steps from the start to end_s; rows and files that fall into a step follow its end"},
+  KEYS_OF_LENGTH,
+  KEYS_OF_ITERATION,
+  KEYS_OF_SOLVER,
   {0}};
 
 const pw_key pw_scene_keys_solid_output[] = {

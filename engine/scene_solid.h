@@ -29,7 +29,8 @@ typedef struct pw_scene_mesh {
   int tets_per_brick;
 } pw_scene_mesh;
 
-/** `implicit:` of a solid scene. */
+/** `implicit:` of a solid scene; of it, scenes with a grid use `steps` and, from `tolerance` on,
+ *  all but mechanisms. */
 typedef struct pw_scene_implicit {
   int steps;
   pw_real step_s;
@@ -64,10 +65,11 @@ typedef struct pw_scene_solid {
 } pw_scene_solid;
 
 /** Key tables; offsets are into pw_scene, of the last one into pw_scene_body. */
-extern const pw_key pw_scene_keys_mesh[];         /**< mesh: */
-extern const pw_key pw_scene_keys_implicit[];     /**< implicit: */
-extern const pw_key pw_scene_keys_solid_output[]; /**< output: */
-extern const pw_key pw_scene_keys_solid_body[];   /**< an entry of bodies: */
+extern const pw_key pw_scene_keys_mesh[];          /**< mesh: */
+extern const pw_key pw_scene_keys_implicit[];      /**< implicit: */
+extern const pw_key pw_scene_keys_grid_implicit[]; /**< implicit: of scenes with a grid */
+extern const pw_key pw_scene_keys_solid_output[];  /**< output: */
+extern const pw_key pw_scene_keys_solid_body[];    /**< an entry of bodies: */
 
 /** @brief Times of the run and of its outputs from numbers of steps. Called when a scene has been
  *  filled; changes nothing the second time. */

@@ -6,7 +6,8 @@
 static void append_effect(pw_sim *sim, int e, pw_stage stage)
 {
   const pw_effect *type = sim->scene.effect[e].type;
-  for (const pw_hook *h = type->hooks; h && h->fn; h++) {
+  const bool implicit = sim->scene.method.update == PW_IMPLICIT;
+  for (const pw_hook *h = implicit ? type->implicit : type->hooks; h && h->fn; h++) {
     if (h->stage == stage) {
       sim->schedule.hook[sim->schedule.n++] = (pw_scheduled){stage, h->fn, sim->ctx[e], type->name};
     }
@@ -41,7 +42,7 @@ pw_status pw_schedule_run(pw_sim *sim, pw_stage stage)
 void pw_sim_schedule_text(const pw_sim *sim, char *text, size_t size)
 {
   static const char *const names[PW_STAGE_COUNT] = {
-      "begin", "p2g", "node_force", "constraint", "remap_p2g", "remap", "mesh", "end"};
+      "start", "begin", "p2g", "node_force", "constraint", "remap_p2g", "remap", "mesh", "end"};
   size_t used = 0;
   if (size > 0) {
     text[0] = '\0';

@@ -13,6 +13,7 @@
 #include "engine/schedule.h"
 #include "engine/sim_report.h"
 #include "engine/step_explicit.h"
+#include "engine/step_implicit.h"
 #include "engine/structure_sim.h"
 #include "engine/update.h"
 
@@ -320,6 +321,7 @@ static pw_status build(pw_sim *sim)
   pw_for_blocks(&sim->blocks, sim->threads, pw_block_wave_speed, sim);
   PW_TRY(pw_update_collect(sim));
   sim->material = (pw_material_counts){0};
+  PW_TRY(pw_quad_steps_create(sim));
   for (pw_idx i = 0; i < sim->points.n; i++) {
     sim->mass += sim->points.mass[i];
   }
@@ -361,6 +363,7 @@ void pw_sim_destroy(pw_sim **sim_ptr)
     }
   }
   pw_structures_destroy(sim);
+  pw_quad_steps_destroy(sim);
   pw_rates_destroy(sim);
   pw_points_destroy(&sim->points);
   pw_nodes_destroy(&sim->nodes);
@@ -414,6 +417,15 @@ static pw_status make_cycle(pw_sim *sim, int n)
   return PW_OK;
 }
 
+/* Implicit steps have their own length. */
+static pw_status step_implicit(pw_sim *sim)
+{
+  PW_TRY(pw_step_implicit(sim));
+  sim->dt_min = sim->step <= 1 ? sim->dt : pw_min(sim->dt_min, sim->dt);
+  sim->dt_max = pw_max(sim->dt_max, sim->dt);
+  return PW_OK;
+}
+
 pw_status pw_sim_step(pw_sim *sim, pw_real dt_limit)
 {
   double start = omp_get_wtime();
@@ -425,7 +437,7 @@ pw_status pw_sim_step(pw_sim *sim, pw_real dt_limit)
   if (sim->dt_contact > 0.0) {
     sim->dt = pw_min(sim->dt, sim->dt_contact);
   }
-  pw_status status = make_cycle(sim, plan_cycle(sim, dt_limit));
+  pw_status status = sim->quad ? step_implicit(sim) : make_cycle(sim, plan_cycle(sim, dt_limit));
   sim->wall += omp_get_wtime() - start;
   return status;
 }

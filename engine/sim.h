@@ -67,7 +67,8 @@ void pw_sim_destroy(pw_sim **sim);
 
 /**
  * @brief One step of at most @p dt_limit seconds (0: no limit besides the stable step); what is left
- *        to the limit is divided evenly when less than two steps remain.
+ *        to the limit is divided evenly when less than two steps remain. An implicit step
+ *        (engine/step_implicit.h) has its own length, whatever the limit.
  * @return PW_OK; PW_RETRY_* or PW_ERR_POINT_LOST with point, position, material, step and time in
  *         the error text: the state is then that of a failed step and not to be continued.
  */

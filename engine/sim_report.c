@@ -10,6 +10,7 @@
 #include "engine/ranges.h"
 #include "engine/rates.h"
 #include "engine/scene_hash.h"
+#include "engine/step_implicit.h"
 #include "engine/structure_sim.h"
 #include "engine/update.h"
 #include "partition/share.h"
@@ -108,6 +109,7 @@ void pw_sim_history(const pw_sim *sim, pw_record *row)
   pw_record_put(row, "contact_dissipated_j", e->contact);
   pw_record_put(row, "contact_spring_j", e->spring);
   pw_record_put(row, "damping_dissipated_j", e->damping);
+  pw_quad_steps_history(sim, row);
   for (int b = 0; b < sim->nbody; b++) {
     put_body(sim, b, row);
   }
@@ -121,6 +123,7 @@ void pw_sim_history(const pw_sim *sim, pw_record *row)
 void pw_sim_results(const pw_sim *sim, pw_record *out)
 {
   out->n = 0;
+  pw_quad_steps_results(sim, out);
   for (int b = 0; b < sim->nbody; b++) {
     put_body(sim, b, out);
   }
@@ -134,24 +137,29 @@ void pw_sim_results(const pw_sim *sim, pw_record *out)
 /* What tells one scene's checkpoint from another's: sizes, and a hash of the parameters. */
 static pw_status archive_identity(pw_sim *sim, pw_archive *ar)
 {
+  enum { SIZES = 8 };
+  static const char *const name[SIZES] = {"points", "nodes",           "elements", "bodies",
+                                          "blocks", "state variables", "as basis", "effects"};
   const uint64_t hash = pw_scene_hash(&sim->scene);
-  const pw_idx want[10] = {sim->points.n,
-                           sim->mesh.nnode,
-                           sim->mesh.nelem,
-                           sim->nbody,
-                           sim->blocks.nblock,
-                           sim->points.nstate,
-                           sim->scene.method.basis,
-                           sim->scene.neffect,
-                           (pw_idx)(hash & INT32_MAX),
-                           (pw_idx)(hash >> 33)};
-  pw_idx have[10];
+  const pw_idx want[SIZES + 2] = {sim->points.n,
+                                  sim->mesh.nnode,
+                                  sim->mesh.nelem,
+                                  sim->nbody,
+                                  sim->blocks.nblock,
+                                  sim->points.nstate,
+                                  sim->scene.method.basis,
+                                  sim->scene.neffect,
+                                  (pw_idx)(hash & INT32_MAX),
+                                  (pw_idx)(hash >> 33)};
+  pw_idx have[SIZES + 2];
   memcpy(have, want, sizeof have);
-  PW_TRY(ar->index(ar, "sim/identity", have, 10));
-  PW_REQUIRE(memcmp(have, want, 8 * sizeof have[0]) == 0, PW_ERR_FILE,
-             "the checkpoint belongs to another scene: it has %d points, %d nodes and %d effects, "
-             "the scene %d, %d and %d",
-             have[0], have[1], have[7], want[0], want[1], want[7]);
+  PW_TRY(ar->index(ar, "sim/identity", have, SIZES + 2));
+  for (int k = 0; k < SIZES; k++) {
+    PW_REQUIRE(have[k] == want[k], PW_ERR_FILE,
+               "the checkpoint belongs to another scene, or to another version of the program: it "
+               "has %d %s, the scene %d",
+               have[k], name[k], want[k]);
+  }
   PW_REQUIRE(memcmp(have, want, sizeof have) == 0, PW_ERR_FILE,
              "the checkpoint belongs to a scene with other parameters; only time.end_s and outputs "
              "may differ");
@@ -222,6 +230,7 @@ pw_status pw_sim_archive(pw_sim *sim, pw_archive *ar)
   PW_TRY(ar->loading ? check_ranges(sim) : PW_OK);
   PW_TRY(pw_structures_archive(sim, ar));
   PW_TRY(pw_rates_archive(sim, ar));
+  PW_TRY(pw_quad_steps_archive(sim, ar));
   for (int k = 0; k < sim->scene.neffect; k++) {
     if (sim->scene.effect[k].type->archive) {
       PW_TRY(sim->scene.effect[k].type->archive(sim, sim->ctx[k], ar));

@@ -87,6 +87,7 @@ struct pw_sim {
                                MASS of [nnode][PW_NODE]; kg; NULL: no ground water */
   int buoyant_field;          /**< velocity field of those points */
   struct pw_fbar_cells *fbar; /**< engine/fbar.h; NULL: off */
+  struct pw_quad_steps *quad; /**< engine/step_implicit.h; NULL: explicit steps */
   struct pw_rates *rates;     /**< engine/rates.h; NULL: all points take the same steps */
   int node_slot;    /**< PW_NODE_VEL or PW_NODE_REMAP: what a constraint hook is to change */
   bool sort_needed; /**< points are not in the order of their blocks */

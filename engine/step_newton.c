@@ -7,6 +7,7 @@
 
 #include "engine/core/mem.h"
 #include "engine/newton_part.h"
+#include "engine/tet_follow.h"
 
 pw_newton_options pw_newton_defaults(void)
 {
@@ -40,9 +41,9 @@ static pw_status allocate(pw_newton *n)
   } else if (o->mechanisms != PW_MECHANISMS_IGNORE) {
     PW_TRY(pw_mechanism_create(n->model, &n->mechanism));
   }
-  pw_solver_options solver = pw_solver_defaults(pw_tet_model_is_symmetric(n->model));
+  pw_solver_options solver = pw_solver_defaults(n->system.symmetric);
   solver.engine = o->solver;
-  solver.x = n->model->mesh->x;
+  solver.x = n->system.x;
   if (o->mechanisms !=
       PW_MECHANISMS_ERROR) { /* such a matrix is singular, but its equations agree */
     solver.least_pivot = 0.0;
@@ -65,14 +66,16 @@ static pw_status check_options(const pw_newton_options *o)
   return PW_OK;
 }
 
-pw_status pw_newton_create(pw_tet_model *model, const pw_newton_options *options, pw_newton **out)
+static pw_status create(const pw_newton_system *system, pw_tet_model *model,
+                        const pw_newton_options *options, pw_newton **out)
 {
   PW_TRY(check_options(options));
   pw_newton *n = NULL;
   PW_TRY(pw_mem_alloc("newton", 1, sizeof *n, &n));
+  n->system = *system;
   n->model = model;
   n->options = *options;
-  n->dofs = 3 * (size_t)model->mesh->tets.nnode;
+  n->dofs = system->dofs;
   pw_status s = allocate(n);
   if (s != PW_OK) {
     pw_newton_destroy(&n);
@@ -80,6 +83,64 @@ pw_status pw_newton_create(pw_tet_model *model, const pw_newton_options *options
   }
   *out = n;
   return PW_OK;
+}
+
+static pw_status begin_tets(void *ctx)
+{
+  return pw_tet_model_begin(ctx);
+}
+
+static pw_status evaluate_tets(void *ctx, const pw_real *u, bool tangent)
+{
+  return pw_tet_model_evaluate(ctx, u, tangent);
+}
+
+static void reload_tets(void *ctx, const pw_real *u)
+{
+  pw_tet_follow_forces(ctx, u);
+}
+
+static void volumes_of_tets(void *ctx, const pw_real *u, pw_real *ratio)
+{
+  pw_tet_model_volumes(ctx, u, ratio);
+}
+
+static void commit_tets(void *ctx, const pw_real *u)
+{
+  pw_tet_model_commit(ctx, u);
+}
+
+pw_status pw_newton_create(pw_tet_model *model, const pw_newton_options *options, pw_newton **out)
+{
+  const pw_newton_system system = {.ctx = model,
+                                   .dofs = 3 * (size_t)model->mesh->tets.nnode,
+                                   .csr = &model->csr,
+                                   .equation = model->equation,
+                                   .fixed = model->fixed,
+                                   .prescribed = model->prescribed,
+                                   .external = model->external,
+                                   .follow = model->follow,
+                                   .force = model->force,
+                                   .lift = model->lift,
+                                   .rounding = &model->rounding,
+                                   .time = &model->time,
+                                   .dt = &model->dt,
+                                   .x = model->mesh->x,
+                                   .symmetric = pw_tet_model_is_symmetric(model),
+                                   .begin = begin_tets,
+                                   .evaluate = evaluate_tets,
+                                   .reload = model->follow ? reload_tets : NULL,
+                                   .volumes = volumes_of_tets,
+                                   .commit = commit_tets};
+  return create(&system, model, options, out);
+}
+
+pw_status pw_newton_create_for(const pw_newton_system *system, const pw_newton_options *options,
+                               pw_newton **out)
+{
+  PW_REQUIRE(!options->newmark.on && options->mechanisms == PW_MECHANISMS_IGNORE, PW_ERR_ARGUMENT,
+             "dynamics and the search for mechanisms need a model of tetrahedra");
+  return create(system, NULL, options, out);
 }
 
 void pw_newton_destroy(pw_newton **newton)
@@ -140,9 +201,9 @@ static pw_status finish_part(pw_newton *n, const pw_newton_load *load, const pw_
   if (n->options.newmark.on) {
     pw_tet_rates_commit(n->model, &n->rates);
   }
-  pw_tet_model_commit(n->model, n->u);
+  n->system.commit(n->system.ctx, n->u);
   for (size_t i = 0; i < n->dofs; i++) {
-    n->previous[i] = n->u[i] / n->model->dt; /* the next step may be longer */
+    n->previous[i] = n->u[i] / *n->system.dt; /* the next step may be longer */
   }
   n->has_previous = true;
   if (load->converged) {
@@ -171,7 +232,7 @@ static bool is_driven(const pw_newton *n, const pw_newton_load *load)
 {
   bool driven = false;
   for (size_t i = 0; i < n->dofs && !load->move; i++) {
-    driven = driven || (n->model->fixed[i] && n->model->prescribed[i] != 0.0);
+    driven = driven || (n->system.fixed[i] && n->system.prescribed[i] != 0.0);
   }
   return driven;
 }
@@ -202,7 +263,7 @@ pw_status pw_newton_step(pw_newton *n, const pw_newton_load *load, pw_newton_rep
              "a dynamic step of %g s", load->step_s);
   while (t[0] < 1.0) {
     t[1] = t[0] + size < 1.0 - 1e-9 ? t[0] + size : 1.0;
-    PW_TRY(pw_tet_model_begin(n->model));
+    PW_TRY(n->system.begin(n->system.ctx));
     PW_TRY(find_mechanisms(n, report));
     pw_status s = pw_newton_solve_part(n, load, t, report);
     if (s == PW_OK) {

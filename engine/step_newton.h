@@ -28,6 +28,7 @@
 #ifndef PW_ENGINE_STEP_NEWTON_H
 #define PW_ENGINE_STEP_NEWTON_H
 
+#include "engine/newton_system.h"
 #include "engine/solver.h"
 #include "engine/tet_inertia.h"
 #include "engine/tet_mechanism.h"
@@ -54,7 +55,7 @@ typedef struct pw_newton_options {
 /** @brief The values named above. */
 pw_newton_options pw_newton_defaults(void);
 
-/** Load of a step. */
+/** Load of a step. @p model is that of pw_newton_create(), NULL for another system. */
 typedef struct pw_newton_load {
   void *ctx;
   pw_real start_s; /**< time at t = 0; s */
@@ -91,6 +92,13 @@ typedef struct pw_newton pw_newton;
  * @return PW_OK; PW_ERR_ARGUMENT for options out of range; PW_ERR_MEMORY.
  */
 pw_status pw_newton_create(pw_tet_model *model, const pw_newton_options *options, pw_newton **out);
+
+/**
+ * @brief The same for another system, quasi-static and without a search for mechanisms.
+ * @return likewise; PW_ERR_ARGUMENT where one of the two is asked for.
+ */
+pw_status pw_newton_create_for(const pw_newton_system *system, const pw_newton_options *options,
+                               pw_newton **out);
 
 /** @brief Free; NULL is accepted. */
 void pw_newton_destroy(pw_newton **n);
@@ -129,7 +137,7 @@ pw_real pw_newton_next_size(const pw_newton_course *c, pw_real size,
  */
 pw_status pw_newton_advance(pw_newton *n, pw_newton_course *c, pw_newton_report *report);
 
-/** @brief Displacement of the nodes over the last part [3][nnode]; m. */
+/** @brief Displacement of the nodes over the last part [dofs] of the system, [3][nnode]; m. */
 const pw_real *pw_newton_displacement(const pw_newton *n);
 
 /** @brief Rates of the nodes, or NULL when quasi-static. */

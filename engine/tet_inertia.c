@@ -101,7 +101,8 @@ void pw_tet_rates_balance(const pw_tet_model *m, pw_tet_rates *r)
 {
   const size_t n = (size_t)m->mesh->tets.nnode;
   for (size_t i = 0; i < 3 * n; i++) {
-    const pw_real mass = m->mass[i % n], left = m->external[i] - m->force[i];
+    const pw_real load = m->external[i] + (m->follow ? m->follow[i] : 0.0);
+    const pw_real mass = m->mass[i % n], left = load - m->force[i];
     r->a0[i] = m->equation[i] >= 0 && mass > 0.0 ? left / mass - r->method.damping * r->v0[i] : 0.0;
   }
   r->begun = true;

@@ -6,6 +6,7 @@
 
 #include "engine/assemble.h"
 #include "engine/core/mem.h"
+#include "engine/tet_follow.h"
 #include "engine/tet_ghost.h"
 #include "engine/tet_inertia.h"
 #include "engine/tet_patch.h"
@@ -29,6 +30,7 @@ void pw_tet_model_destroy(pw_tet_model *m)
   pw_mem_free(&m->fixed);
   pw_mem_free(&m->prescribed);
   pw_mem_free(&m->external);
+  pw_mem_free(&m->follow);
   pw_mem_free(&m->equation);
   pw_mem_free(&m->numbered);
   pw_mem_free(&m->active);
@@ -44,7 +46,7 @@ void pw_tet_model_destroy(pw_tet_model *m)
   memset(m, 0, sizeof *m);
 }
 
-static pw_status allocate(pw_tet_model *m)
+static pw_status allocate(pw_tet_model *m, bool follower)
 {
   const pw_off n = 3 * (pw_off)m->mesh->tets.nnode, nelem = m->mesh->tets.nelem;
   PW_TRY(
@@ -54,6 +56,9 @@ static pw_status allocate(pw_tet_model *m)
   PW_TRY(pw_mem_alloc("nodes: fixed", n, sizeof *m->fixed, &m->fixed));
   PW_TRY(pw_mem_alloc("nodes: prescribed", n, sizeof *m->prescribed, &m->prescribed));
   PW_TRY(pw_mem_alloc("nodes: external force", n, sizeof *m->external, &m->external));
+  if (follower) {
+    PW_TRY(pw_mem_alloc("nodes: force that follows", n, sizeof *m->follow, &m->follow));
+  }
   PW_TRY(pw_mem_alloc("nodes: equations", n, sizeof *m->equation, &m->equation));
   PW_TRY(pw_mem_alloc("nodes: new equations", n, sizeof *m->numbered, &m->numbered));
   PW_TRY(pw_mem_alloc("nodes: mass", n / 3, sizeof *m->mass, &m->mass));
@@ -93,7 +98,7 @@ static pw_status build(const pw_tet_setup *setup, pw_tet_model *m)
   const int coupled =
       (m->fbar != PW_FBAR_NONE ? PW_CSR_PATCHES : 0) | (m->ghost.gamma > 0.0 ? PW_CSR_FACES : 0);
   PW_TRY(pw_csr_create(m->mesh, coupled, &m->csr));
-  return allocate(m);
+  return allocate(m, setup->follower);
 }
 
 pw_status pw_tet_model_create(const pw_tet_setup *setup, pw_tet_model *out)
@@ -118,7 +123,7 @@ pw_status pw_tet_model_create(const pw_tet_setup *setup, pw_tet_model *out)
 
 bool pw_tet_model_is_symmetric(const pw_tet_model *m)
 {
-  bool symmetric = m->fbar == PW_FBAR_NONE;
+  bool symmetric = m->fbar == PW_FBAR_NONE && !m->follow;
   for (pw_idx i = 0; i < m->nmaterial; i++) {
     symmetric = symmetric && m->material[i].model->symmetric;
   }
@@ -228,7 +233,7 @@ pw_status pw_tet_model_begin(pw_tet_model *m)
   number_equations(m);
   m->has_mass = false;
   pw_tet_ghost_begin(m);
-  return PW_OK;
+  return pw_tet_follow_begin(m);
 }
 
 /* One evaluation, shared by all blocks. */
@@ -340,12 +345,23 @@ static pw_status check_elements(const pw_tet_model *m, const pw_real *u)
   return PW_OK;
 }
 
+static void add_follow(pw_tet_model *m, const pw_real *u, bool tangent)
+{
+  pw_tet_follow_forces(m, u);
+  if (tangent) {
+    pw_tet_follow_tangent(m, u);
+  }
+}
+
 pw_status pw_tet_model_evaluate(pw_tet_model *m, const pw_real *u, bool tangent)
 {
   evaluation ev = {.m = m, .u = u, .tangent = tangent};
   const pw_pass pass = {.before = clear_part, .block = evaluate_block};
   pw_assemble_pass(&m->blocks, m->threads, &pass, &ev);
   pw_tet_ghost_add(m, u, tangent);
+  if (m->surface) {
+    add_follow(m, u, tangent);
+  }
   pw_real sum = 0.0;
   for (pw_idx k = 0; k < m->blocks.nblock; k++) {
     sum += m->stiff[k];
@@ -427,5 +443,6 @@ void pw_tet_model_commit(pw_tet_model *m, const pw_real *u)
 {
   evaluation ev = {.m = m, .u = u};
   pw_for_blocks(&m->blocks, m->threads, commit_block, &ev);
+  pw_tet_follow_commit(m, u);
   m->step++;
 }

@@ -33,6 +33,7 @@ typedef struct pw_tet_setup {
   pw_fbar fbar;
   int threads;   /**< >= 1 */
   pw_real ghost; /**< stiffness gamma of ghost stabilisation (engine/tet_ghost.h); 0: none; Pa */
+  bool follower; /**< loads may follow the surface (engine/tet_follow.h): an unsymmetric tangent */
 } pw_tet_setup;
 
 /** Inertia of a part, set by engine/tet_inertia.h; NULL and zero when quasi-static. */
@@ -71,6 +72,8 @@ typedef struct pw_tet_model {
   uint8_t *fixed;      /**< [3][nnode] 1: displacement prescribed. Set by the caller */
   pw_real *prescribed; /**< [3][nnode] displacement over the step where fixed; m. Likewise */
   pw_real *external;   /**< [3][nnode] force at the end of the step; N. Likewise */
+  pw_real *follow;     /**< [3][nnode] force of loads that follow the surface, of the last evaluation;
+                            NULL: the model is not made for them; N */
   pw_idx *equation;    /**< [3][nnode] row, or -1: fixed, or no point near the node */
   pw_idx *numbered;    /**< [3][nnode] scratch of the numbering */
   uint8_t *active;     /**< [nnode] 1: an element with points has the node */
@@ -85,6 +88,7 @@ typedef struct pw_tet_model {
   bool has_mass;       /**< see engine/tet_loads.h */
   pw_tet_inertia inertia;
   pw_tet_ghost ghost;
+  struct pw_tet_follow *surface; /**< surfaces under such loads, borrowed; or NULL */
   pw_walk_counts walked; /**< searches of the last pw_tet_model_begin() */
   pw_walk_counts *chunk; /**< counts of a chunk of points */
 } pw_tet_model;
@@ -107,15 +111,16 @@ void pw_tet_model_destroy(pw_tet_model *m);
 pw_status pw_tet_model_begin(pw_tet_model *m);
 
 /**
- * @brief Internal force (with that of ghost stabilisation), inertia, trial stress and, when asked
- *        for, tangent and lift.
+ * @brief Internal force (with that of ghost stabilisation), inertia, loads that follow, trial stress
+ *        and, when asked for, tangent and lift.
  * @param[in] u       [3][nnode] displacements of the nodes since the start of the step; m
  * @param[in] tangent fill csr and lift
  * @return PW_OK; PW_RETRY_DOMAIN_INVERTED or PW_RETRY_STRESS naming the first element that fails.
  */
 pw_status pw_tet_model_evaluate(pw_tet_model *m, const pw_real *u, bool tangent);
 
-/** @brief Whether the tangent is symmetric: without F-bar, of materials whose tangent is. */
+/** @brief Whether the tangent is symmetric: without F-bar and loads that follow, of materials whose
+ *  tangent is. */
 bool pw_tet_model_is_symmetric(const pw_tet_model *m);
 
 /** @brief Least and largest volume ratio over the step of an element with points, for @p u. */
@@ -129,7 +134,8 @@ void pw_tet_model_commit(pw_tet_model *m, const pw_real *u);
  *  included; N. */
 static inline pw_real pw_tet_model_reaction(const pw_tet_model *m, size_t at)
 {
-  return m->force[at] + (m->inertia.on ? m->inertia.force[at] : 0.0) - m->external[at];
+  return m->force[at] + (m->inertia.on ? m->inertia.force[at] : 0.0) - m->external[at] -
+         (m->follow ? m->follow[at] : 0.0);
 }
 
 #endif /* PW_ENGINE_TET_MODEL_H */

@@ -75,7 +75,8 @@ pw_status pw_check_equilibrium(pw_sim *sim, FILE *out)
   }
   PW_TRY(pw_mem_alloc("points at the start", (pw_off)KEPT * p->n, sizeof(pw_real), &start));
   keep(p, start);
-  while (made < DRIFT_STEPS && pw_sim_time(sim) < scene->time.end_s &&
+  const int most = scene->method.update == PW_IMPLICIT ? 1 : DRIFT_STEPS;
+  while (made < most && pw_sim_time(sim) < scene->time.end_s &&
          pw_sim_step(sim, scene->time.end_s - pw_sim_time(sim)) == PW_OK) {
     made++;
   }

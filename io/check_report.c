@@ -7,6 +7,7 @@
 #include "engine/assemble.h"
 #include "engine/core/mem.h"
 #include "engine/sim_state.h"
+#include "engine/step_implicit.h"
 #include "engine/update.h"
 #include "io/check_equilibrium.h"
 #include "io/output_times.h"
@@ -166,6 +167,20 @@ static void print_estimates(pw_sim *sim, pw_real first, FILE *out)
           pw_duration_text(wall * steps, text, sizeof text), 1e3 * wall);
 }
 
+/* Of implicit steps: how many there are, and the system of the first one. */
+static void print_load_steps(pw_sim *sim, FILE *out)
+{
+  const pw_scene_implicit *p = &pw_sim_scene(sim)->solid.implicit;
+  const pw_quad_model *m = &sim->quad->model;
+  fprintf(out, "load steps   %d of %g s each%s\n", p->steps, sim->dt_next,
+          p->adaptive ? " to begin with, then as long as iterations allow" : "");
+  if (pw_quad_model_begin(&sim->quad->model) == PW_OK) {
+    fprintf(out, "equations    %d, %lld values in a matrix that is %s\n", m->csr.n,
+            (long long)m->csr.start[m->csr.n],
+            pw_quad_model_is_symmetric(m) ? "symmetric" : "not symmetric");
+  }
+}
+
 void pw_check_report(pw_sim *sim, FILE *out)
 {
   const pw_scene *scene = pw_sim_scene(sim);
@@ -178,7 +193,11 @@ void pw_check_report(pw_sim *sim, FILE *out)
   print_grid(pw_sim_mesh(sim), out);
   print_sizes(&r, out);
   fprintf(out, "memory       %.1f MiB\n", (pw_real)pw_mem_bytes() / 1048576.0);
-  print_estimates(sim, r.dt_s, out);
+  if (sim->quad) {
+    print_load_steps(sim, out);
+  } else {
+    print_estimates(sim, r.dt_s, out);
+  }
   pw_status status = pw_check_equilibrium(sim, out);
   if (status != PW_OK) {
     fprintf(out, "start        not known: %s\n", pw_error_text());

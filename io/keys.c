@@ -171,6 +171,7 @@ void pw_keys_print(FILE *out)
   print_table(out, "time:", NULL, pw_scene_keys_time);
   print_table(out, "method:", NULL, pw_scene_keys_method);
   print_table(out, "output:", NULL, pw_scene_keys_output);
+  print_table(out, "implicit:", "with method.update: implicit", pw_scene_keys_grid_implicit);
   for (int i = 0; pw_material_at(i); i++) {
     snprintf(title, sizeof title, "materials: NAME: with model: %s", pw_material_at(i)->name);
     print_table(out, title, pw_material_at(i)->brief, pw_material_at(i)->keys);

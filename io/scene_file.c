@@ -17,7 +17,7 @@ enum {
 
 static const pw_yaml_place file_start = {-1, 1, 1};
 
-static const char *const plane_sections[] = {"grid",   "time",      "method",
+static const char *const plane_sections[] = {"grid",   "time",      "method", "implicit",
                                              "output", "materials", "bodies"};
 static const char *const solid_sections[] = {"mesh", "implicit", "output", "materials", "bodies"};
 
@@ -68,7 +68,8 @@ static bool is_solid(const pw_reader *r)
   const char *choices = pw_key_find(pw_scene_keys_top, "geometry")->choices;
   const int given = node && node->kind == PW_YAML_SCALAR ? pw_key_choice(choices, node->text) : -1;
   return given >= 0 ? given == PW_SOLID
-                    : pw_yaml_find(r->root, "mesh") || pw_yaml_find(r->root, "implicit");
+                    : pw_yaml_find(r->root, "mesh") ||
+                          (pw_yaml_find(r->root, "implicit") && !pw_yaml_find(r->root, "grid"));
 }
 
 /* Keys of the top level itself; its sections are only recognised here. */
@@ -122,6 +123,7 @@ static void read_scene(pw_reader *r, void *unused)
     read_part(r, "time", pw_scene_keys_time, &r->time);
     read_part(r, "method", pw_scene_keys_method, &r->method);
     read_part(r, "output", pw_scene_keys_output, &r->output);
+    read_part(r, "implicit", pw_scene_keys_grid_implicit, &r->implicit);
   }
   pw_reader_soils(r);
   pw_reader_materials(r);

@@ -48,6 +48,18 @@ static bool all_clean(const pw_reader_part *part, int n)
   return true;
 }
 
+/* `implicit:` of a scene with a grid. */
+static void check_grid_implicit(pw_reader *r)
+{
+  const bool asked = r->scene->method.update == PW_IMPLICIT;
+  if (r->implicit.node && (r->method.clean || !r->method.node) && !asked) {
+    pw_yaml_error(r->m, pw_reader_place(r->implicit.node),
+                  "implicit: explicit steps have no use for it (method.update: implicit)");
+  } else if (r->implicit.clean || (asked && !r->implicit.node)) {
+    report(r, pw_scene_check_grid_implicit(r->scene), r->implicit.node);
+  }
+}
+
 static void check_plane(pw_reader *r)
 {
   const pw_scene *s = r->scene;
@@ -62,6 +74,7 @@ static void check_plane(pw_reader *r)
   if (r->output.clean) {
     report(r, pw_scene_check_output(s), r->output.node);
   }
+  check_grid_implicit(r);
 }
 
 /* Rules are applied only where all they look at is clean: no errors that follow from errors. */

@@ -50,6 +50,18 @@ typedef struct pw_gradients {
   pw_real du[5][PW_CHUNK];
 } pw_gradients;
 
+enum { PW_SUPPORT = 16 }; /**< nodes of a point, at most */
+
+/** Nodes of one point, each once, and its weights there. In axisymmetry the hoop strain is
+ *  sum move_i u_i / r_p. */
+typedef struct pw_support {
+  int n;
+  pw_idx node[PW_SUPPORT];
+  pw_real s[PW_SUPPORT];                  /**< mean shape function, as masses are scattered */
+  pw_real gx[PW_SUPPORT], gy[PW_SUPPORT]; /**< gradients, as forces are; 1/m */
+  pw_real move[PW_SUPPORT];               /**< what moves the point */
+} pw_support;
+
 /** One row of the list. @p rec are the records of one velocity field. */
 typedef struct pw_kernels {
   const char *name; /**< "axi_cpdi_quad4" */
@@ -81,6 +93,9 @@ typedef struct pw_kernels {
    *  surface, the outward normal times area (m2, per radian or metre); slots 2, 3, 4:
    *  sum_p V_p S_ip sigma_p (xx, yy, xy; J); slot 5: sum_p V_p S_ip (m3). */
   void (*p2g_surface)(const pw_transfer *t, pw_real *surface, pw_idx first, pw_idx last);
+  /** Nodes and weights of point @p i, for systems of equations. Nodes without any weight are left
+   *  out. */
+  void (*support)(const pw_transfer *t, pw_idx i, pw_support *out);
 } pw_kernels;
 
 /** @brief The row for a geometry and basis (pw_geometry, pw_basis), or NULL. */

@@ -13,6 +13,20 @@ for scene in "$scenes"/small_*.yaml; do
   done
 done
 
+# Solid scenes with either solver; the symmetric ones too, which have another factorisation.
+for engine in direct krylov; do
+  for fbar in none increment; do
+    for threads in 1 2 3 4; do
+      out=block_${engine}_$fbar
+      expect_exit 0 "$program" run "$scenes/small_block.yaml" $plain --threads $threads \
+        --set implicit.solver=$engine --set implicit.fbar=$fbar --set implicit.steps=4 \
+        --out ${out}_$threads
+      expect_same ${out}_1/checkpoint.h5 ${out}_$threads/checkpoint.h5
+      expect_same ${out}_1/history.csv ${out}_$threads/history.csv
+    done
+  done
+done
+
 # The driven pile itself, with a short gravity stage and a blow.
 pile="--set gravity.ramp_s=0.01 --set hammer.start_s=0.01 --set time.end_s=0.03"
 for case in penalty frictional; do

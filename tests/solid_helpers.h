@@ -22,6 +22,7 @@ typedef struct solid {
   pw_tet_material material;
   pw_tet_rule rule;          /* of the points: one by default */
   int approach, line_search; /* of the driver; 0: as by default */
+  bool follower;             /* pressures may follow the surface */
   pw_tet_model model;
   pw_newton *newton;
   pw_newton_report report;
@@ -94,7 +95,8 @@ static inline pw_tet_material solid_von_mises(double young, double poisson, doub
 static inline pw_status solid_start(solid *s, pw_fbar fbar, int threads, const pw_idx *body)
 {
   pw_tet_fill fill = {.rule = s->rule, .body = body, .nmaterial = 1, .material = &s->material};
-  pw_tet_setup setup = {.mesh = &s->mesh, .fill = &fill, .fbar = fbar, .threads = threads};
+  pw_tet_setup setup = {
+      .mesh = &s->mesh, .fill = &fill, .fbar = fbar, .threads = threads, .follower = s->follower};
   pw_newton_options options = pw_newton_defaults();
   options.approach = s->approach > 0 ? s->approach : options.approach;
   options.line_search = s->line_search;

@@ -57,6 +57,22 @@ static void thick_cylinder_widens_as_hill_says(void **state)
   pw_implicit_destroy(&sim);
 }
 
+/* To 1.5 times its radius at p = 0.42827 mu (Ogden); the pressure acts on the bore as it is then. */
+static void rubber_tube_opens_as_ogden_says(void **state)
+{
+  (void)state;
+  if (!pw_gmsh_available()) {
+    skip();
+  }
+  pw_implicit *sim = test_implicit_case("rubber_tube/scene.yaml", 0, NULL);
+  test_implicit_run(sim);
+  assert_relative(test_implicit_history(sim, "tracer_0_x_m"), 0.5, 0.01);
+  assert_relative(test_implicit_history(sim, "tracer_1_y_m"), 0.5, 0.01);
+  assert_relative(test_implicit_history(sim, "tracer_3_x_m"), sqrt(5.25) - 2.0, 0.01);
+  assert_relative(test_implicit_history(sim, "traction_0_force_x_n"), 0.42827e6 * 1.5 / 6.0, 0.01);
+  pw_implicit_destroy(&sim);
+}
+
 static void column_rests_on_its_base(void **state)
 {
   (void)state;
@@ -73,6 +89,7 @@ int main(void)
       cmocka_unit_test(cooks_membrane_bends_without_locking),
       cmocka_unit_test(footing_bears_its_limit),
       cmocka_unit_test(thick_cylinder_widens_as_hill_says),
+      cmocka_unit_test(rubber_tube_opens_as_ogden_says),
       cmocka_unit_test(column_rests_on_its_base),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);

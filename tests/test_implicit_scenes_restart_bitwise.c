@@ -73,6 +73,7 @@ static void dynamics_go_on(void **state)
                                "implicit.fbar=increment"};
   check_restart("scenes/small_block.yaml", 3, points);
   check_restart("scenes/small_block.yaml", 3, nodes);
+  check_restart("scenes/small_loads.yaml", 0, NULL);
 }
 
 static void moving_meshes_go_on(void **state)

@@ -97,6 +97,7 @@ static void for_each_table(table_fn fn, void *context)
   fn("time:", pw_scene_keys_time, context);
   fn("method:", pw_scene_keys_method, context);
   fn("output:", pw_scene_keys_output, context);
+  fn("implicit:", pw_scene_keys_grid_implicit, context);
   fn("bodies: NAME:", pw_scene_keys_body, context);
   fn("bodies: NAME: refine:", pw_scene_keys_refine, context);
   for (int i = 0; pw_material_at(i); i++) {

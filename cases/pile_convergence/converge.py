@@ -9,7 +9,8 @@ usage: converge.py push|hammer [--out DIR] [--program FILE] [--threads N]
 Runs a scene with each contact at each resolution (radius of the pile over edge of a cell), one
 after the other, and writes into DIR: table.csv, table.txt, and the plots resistance.png (or
 penetration.png), convergence.png and time.png (gnuplot). A run that already ended with the same
-settings is not repeated. Python's standard library only.
+settings is not repeated. Before each run it says how much time is left, once it can tell. Python's
+standard library only.
 """
 import argparse
 import csv
@@ -62,7 +63,24 @@ def settings(study, contact, cell, args):
     return sets + args.settings
 
 
-def run(args, contact, resolution):
+def expected_s(rows, contact, resolution):
+    """Wall time of a run by the finest one before it, of this contact if there is one: points grow
+    with the square of the resolution, steps with the resolution."""
+    same = [r for r in rows if r["contact"] == contact] or rows
+    last = max(same, key=lambda r: r["radius_over_cell"])
+    return last["wall_s"] * (resolution / last["radius_over_cell"]) ** 3
+
+
+def time_left(args, rows):
+    """What is still to be run takes about this long, in words; empty before the first run."""
+    todo = [(c, n) for n in args.resolutions for c in args.contacts][len(rows):]
+    if not rows:
+        return ""
+    minutes = sum(expected_s(rows, c, n) for c, n in todo) / 60
+    return f", about {minutes:.0f} min left" if minutes >= 1 else ", less than a minute left"
+
+
+def run(args, contact, resolution, left):
     """Run one scene unless it has been run; its folder."""
     folder = args.out / f"{contact}_{resolution:g}"
     scene = CASES / SCENES[args.study][contact]
@@ -75,11 +93,14 @@ def run(args, contact, resolution):
     text = "\n".join([scene.read_text()] + sets)
     if note.exists() and note.read_text() == text and finished(folder):
         return folder
-    print("run:", contact, f"radius/cell {resolution:g}", " ".join(sets), flush=True)
+    print(f"run: {contact} radius/cell {resolution:g}{left}:", " ".join(sets), flush=True)
     note.unlink(missing_ok=True)
     status = subprocess.run(command).returncode
     if status == 0:
         note.write_text(text)
+    elif not (folder / "summary.json").exists():
+        sys.exit(f"converge.py: the scene above was refused at radius/cell {resolution:g}; "
+                 "the tables hold what was run before it")
     else:
         print(f"     ended with status {status}: listed with what it reached", flush=True)
     return folder
@@ -205,7 +226,7 @@ def main():
     rows, folders = [], {}
     for n in args.resolutions:
         for c in args.contacts:
-            folders[c, n] = run(args, c, n)
+            folders[c, n] = run(args, c, n, time_left(args, rows))
             rows.append(measure(args, c, n, folders[c, n]))
             write_tables(args.out, rows)
     plots(args, rows, folders)

@@ -12,6 +12,7 @@
 #include <stdio.h>
 
 #include "engine/core/mem.h"
+#include "engine/step_implicit.h"
 
 #define AT(member) offsetof(pw_boundary_param, member)
 
@@ -141,6 +142,35 @@ static pw_status hold_remapped(pw_sim *sim, void *ctx)
   return PW_OK;
 }
 
+/* Implicit steps: what the nodes move over the part. */
+static pw_status hold_displacement(pw_sim *sim, void *ctx)
+{
+  const boundary *c = ctx;
+  for (pw_idx k = 0; k < c->n; k++) {
+    for (int a = 0; a < 2; a++) {
+      if (c->fix[a]) {
+        pw_quad_model_hold(&sim->quad->model, c->node[k], a, c->instance + 1,
+                           c->velocity[a] * sim->dt);
+      }
+    }
+  }
+  return PW_OK;
+}
+
+static pw_status react(pw_sim *sim, void *ctx)
+{
+  boundary *c = ctx;
+  for (int a = 0; a < 2; a++) {
+    pw_real sum = 0.0;
+    for (pw_idx k = 0; k < c->n; k++) {
+      sum += pw_quad_model_reaction(&sim->quad->model, c->node[k], a, c->instance + 1);
+    }
+    c->reaction[a] = sim->measure * sum;
+    sim->energy.external += c->reaction[a] * c->velocity[a] * sim->dt;
+  }
+  return PW_OK;
+}
+
 static void history(const pw_sim *sim, void *ctx, pw_record *row)
 {
   const boundary *c = ctx;
@@ -195,12 +225,19 @@ static const pw_hook hooks[] = {
     {0, NULL},
 };
 
+static const pw_hook implicit_hooks[] = {
+    {PW_STAGE_CONSTRAINT, hold_displacement},
+    {PW_STAGE_END, react},
+    {0, NULL},
+};
+
 const pw_effect pw_effect_boundary = {
     .name = "boundary",
     .brief = "given velocity components at nodes: rollers, fixities, moving walls",
     .many = true,
     .keys = keys,
     .hooks = hooks,
+    .implicit = implicit_hooks,
     .check = check,
     .create = create,
     .destroy = destroy,

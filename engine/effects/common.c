@@ -1,6 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "engine/effects/common.h"
 
+#include "engine/effects/load_curve.h"
+
 enum { CHUNK = 512 };
 
 pw_off pw_sum_scratch(pw_off n)
@@ -99,4 +101,10 @@ int pw_scene_contacts(const pw_scene *scene)
     count += scene->effect[e].type && scene->effect[e].type->own_velocity_fields;
   }
   return count;
+}
+
+pw_real pw_effect_ramp(const pw_sim *sim, pw_real start, pw_real length)
+{
+  return sim->quad ? pw_ramp(sim->time + sim->dt, start, length)
+                   : pw_ramp_mean(sim->time, sim->dt, start, length);
 }

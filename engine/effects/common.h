@@ -54,6 +54,10 @@ static inline pw_real pw_node_mean_velocity(const pw_sim *sim, const pw_real *re
   return 0.5 * (rec[PW_NODE_VEL + a] - rec[PW_NODE_FORCE + a] + rec[sim->node_slot + a]);
 }
 
+/** @brief Part of a load that acts in this step: the mean of the ramp over an explicit step, its
+ *  value at the end of an implicit one. */
+pw_real pw_effect_ramp(const pw_sim *sim, pw_real start, pw_real length);
+
 /** @brief Number of entries of the scene that want one velocity field per body. */
 int pw_scene_contacts(const pw_scene *scene);
 

@@ -37,6 +37,8 @@ typedef struct damped {
 static pw_status check(const pw_scene *scene, const void *param)
 {
   const pw_damping_local_param *p = param;
+  PW_REQUIRE(scene->method.update != PW_IMPLICIT || !pw_scene_find_effect(scene, "dynamics"),
+             PW_ERR_SCENE, "implicit steps know it in equilibrium only; dynamics: damping_per_s");
   PW_REQUIRE(p->body < 0 || scene->nbody == 1 || pw_scene_contacts(scene) > 0, PW_ERR_SCENE,
              "body: without a contact all bodies share one velocity field");
   return PW_OK;
@@ -135,12 +137,16 @@ static const pw_hook hooks[] = {
     {0, NULL},
 };
 
+/* In equilibrium nothing is out of balance, so that damping has no force. */
+static const pw_hook no_hooks[] = {{0, NULL}};
+
 const pw_effect pw_effect_damping_local = {
     .name = "damping_local",
     .brief = "local damping: a part of the out-of-balance force opposes the motion",
     .many = true,
     .keys = keys,
     .hooks = hooks,
+    .implicit = no_hooks,
     .check = check,
     .create = create,
     .destroy = destroy,

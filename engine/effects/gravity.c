@@ -29,12 +29,13 @@ typedef struct gravity {
   pw_real *part;     /* scratch of sums */
 } gravity;
 
-/* Mean over the step of the acceleration, so that ramp and turn do not depend on the steps. */
+/* Explicit: mean over the step of the acceleration, so that ramp and turn do not depend on the
+ * steps. */
 static void set_acceleration(pw_sim *sim, gravity *c)
 {
   const pw_gravity_param *p = c->param;
-  pw_real ramp = pw_ramp_mean(sim->time, sim->dt, 0.0, p->ramp_s);
-  pw_real turned = pw_ramp_mean(sim->time, sim->dt, p->tilt_at_s, 0.0);
+  pw_real ramp = pw_effect_ramp(sim, 0.0, p->ramp_s);
+  pw_real turned = pw_effect_ramp(sim, p->tilt_at_s, 0.0);
   pw_real a = p->acceleration_m_s2 * ramp;
   c->g[0] = a * turned * c->tilted[0];
   c->g[1] = a * (turned * c->tilted[1] - (1.0 - turned));
@@ -154,6 +155,7 @@ const pw_effect pw_effect_gravity = {
     .brief = "weight of all points, with a ramp; may turn by an angle",
     .keys = keys,
     .hooks = hooks,
+    .implicit = hooks,
     .create = create,
     .destroy = destroy,
 };

@@ -166,6 +166,20 @@ static pw_status measure(pw_sim *sim, void *ctx)
   return PW_OK;
 }
 
+/* The same in implicit steps, where the records hold the forces. */
+static pw_status measure_start(pw_sim *sim, void *ctx)
+{
+  initial *c = ctx;
+  const pw_real *rec = pw_nodes_field(&sim->nodes, sim->body[c->body].field);
+  for (pw_idx k = 0; k < sim->nodes.nnode; k++) {
+    const pw_real *r = rec + (pw_off)k * PW_NODE, *f = r + PW_NODE_FORCE;
+    c->residual = pw_max(c->residual, sim->measure * sqrt(f[0] * f[0] + f[1] * f[1]));
+    c->weight = pw_max(c->weight, sim->measure * r[PW_NODE_MASS] * c->gravity);
+  }
+  c->measured = true;
+  return PW_OK;
+}
+
 static void results(const pw_sim *sim, void *ctx, pw_record *out)
 {
   const initial *c = ctx;
@@ -218,12 +232,19 @@ static const pw_hook hooks[] = {
     {0, NULL},
 };
 
+static const pw_hook implicit_hooks[] = {
+    {PW_STAGE_START, measure_start},
+    {PW_STAGE_P2G, displace},
+    {0, NULL},
+};
+
 const pw_effect pw_effect_initial_stress = {
     .name = "initial_stress",
     .brief = "stress at the start: at rest (K0), in layered ground with water, or uniform",
     .keys = keys,
     .rows = &rows,
     .hooks = hooks,
+    .implicit = implicit_hooks,
     .check = check,
     .create = create,
     .destroy = destroy,

@@ -2,7 +2,7 @@
 /* Loads: tractions on surfaces of the mesh, and gravity.
  *
  * Tractions act on the surface where the mesh has it at the start; they keep their direction (dead
- * loads). Gravity acts on the points where they are at the start of a part of a step.
+ * loads). A pressure may follow the surface of the material instead (engine/tet_follow.h). Gravity acts on the points where they are at the start of a part of a step.
  */
 #include "engine/effects/solid_params.h"
 
@@ -10,6 +10,7 @@
 #include <stdio.h>
 
 #include "engine/core/mem.h"
+#include "engine/tet_follow.h"
 #include "engine/tet_loads.h"
 
 #define AT(member) offsetof(pw_traction_param, member)
@@ -22,6 +23,8 @@ static const pw_key traction_keys[] = {
    "a pressure onto the surface, a traction, or a force spread evenly; on cells that bodies fill"},
   {"pressure_pa", PW_KEY_REAL, AT(pressure_pa), -1e15, 1e15, NULL, NULL, "kind=pressure",
    "pressure in the end, onto the body"},
+  {"follower", PW_KEY_BOOL, AT(follower), 0, 0, "false", NULL, "kind=pressure",
+   "the pressure goes with the surface of the material and stays normal to it"},
   {"traction_pa", PW_KEY_TRIPLE, AT(traction_pa), -1e15, 1e15, NULL, NULL, "kind=traction",
    "force per area in the end"},
   {"total_force_n", PW_KEY_TRIPLE, AT(force_n), -1e15, 1e15, NULL, NULL, "kind=force",
@@ -41,10 +44,11 @@ typedef struct load {
   const pw_solid_ramp *ramp;
   int number;
   pw_idx n;
-  pw_idx *node;   /* [n] traction: loaded nodes */
-  pw_real *force; /* [n][3] traction: whole force of a node; N */
-  pw_real part;   /* of the load, so far */
-  pw_real sum[3]; /* whole force; N */
+  pw_idx *node;           /* [n] traction: loaded nodes */
+  pw_real *force;         /* [n][3] traction: whole force of a node; N */
+  pw_real part;           /* of the load, so far */
+  pw_real sum[3];         /* whole force; N */
+  pw_tet_follow *surface; /* of a pressure that follows, in place of nodes and forces; or NULL */
 } load;
 
 static void destroy(void **ctx)
@@ -53,6 +57,7 @@ static void destroy(void **ctx)
   if (l) {
     pw_mem_free(&l->node);
     pw_mem_free(&l->force);
+    pw_tet_follow_destroy(&l->surface);
   }
   pw_mem_free(ctx);
 }
@@ -169,6 +174,14 @@ static pw_status find_faces(const pw_implicit *sim, const pw_solid_mesh *mesh,
   return PW_OK;
 }
 
+/* The nodes of a face of the mesh, so that their area vector points outwards. */
+static void turn_outward(const pw_tets *t, pw_idx face, pw_idx *node)
+{
+  for (int i = 0; i < 3; i++) {
+    node[i] = t->node[4 * (face / 4) + pw_tet_face[face % 4][i]];
+  }
+}
+
 static void spread(const pw_implicit *sim, const pw_solid_mesh *mesh, const pw_solid_group *g,
                    const surface *on, load *l)
 {
@@ -179,9 +192,7 @@ static void spread(const pw_implicit *sim, const pw_solid_mesh *mesh, const pw_s
     if (face < 0) {
       continue;
     }
-    for (int i = 0; i < 3; i++) {
-      outward[i] = sim->mesh.tets.node[4 * (face / 4) + pw_tet_face[face % 4][i]];
-    }
+    turn_outward(&sim->mesh.tets, face, outward);
     area_of(mesh, outward, area);
     force_of(l->param, area, on->area, force);
     for (int i = 0; i < 9; i++) {
@@ -189,6 +200,50 @@ static void spread(const pw_implicit *sim, const pw_solid_mesh *mesh, const pw_s
       l->sum[i % 3] += force[i % 3] / 3.0;
     }
   }
+}
+
+/* Forces of the nodes of a surface that keep their direction. */
+static pw_status create_dead(pw_implicit *sim, const pw_solid_mesh *mesh, const pw_solid_group *g,
+                             const surface *on, load *l)
+{
+  l->n = g->nnode;
+  PW_TRY(pw_mem_alloc("traction: nodes", l->n, sizeof *l->node, &l->node));
+  PW_TRY(pw_mem_alloc("traction: forces", 3 * (pw_off)l->n, sizeof *l->force, &l->force));
+  for (pw_idx i = 0; i < l->n; i++) {
+    l->node[i] = g->node[i];
+  }
+  spread(sim, mesh, g, on, l);
+  return PW_OK;
+}
+
+/* A point in the middle of every loaded face. */
+static pw_status create_follower(pw_implicit *sim, const pw_solid_mesh *mesh,
+                                 const pw_solid_group *g, const surface *on, load *l)
+{
+  pw_idx n = 0;
+  for (pw_idx k = 0; k < g->nface; k++) {
+    n += on->face[k] >= 0;
+  }
+  PW_TRY(pw_tet_follow_create(&sim->model, n, &l->surface));
+  pw_tet_follow *f = l->surface;
+  pw_idx i = 0;
+  for (pw_idx k = 0; k < g->nface; k++) {
+    const pw_idx face = on->face[k];
+    pw_idx outward[3];
+    pw_real area[3];
+    if (face < 0) {
+      continue;
+    }
+    turn_outward(&sim->mesh.tets, face, outward);
+    area_of(mesh, outward, area);
+    for (pw_idx c = 0; c < 3; c++) {
+      const pw_real *x = mesh->input.x + (pw_off)c * mesh->input.nnode;
+      f->x[c * n + i] = (x[outward[0]] + x[outward[1]] + x[outward[2]]) / 3.0;
+      f->area[c * n + i] = area[c];
+    }
+    f->elem[i++] = face / 4;
+  }
+  return PW_OK;
 }
 
 static pw_status create_traction(pw_implicit *sim, const pw_solid_mesh *mesh, const void *param,
@@ -206,12 +261,6 @@ static pw_status create_traction(pw_implicit *sim, const pw_solid_mesh *mesh, co
   snprintf(path, sizeof path, "traction.%d.group", l->number);
   PW_TRY(pw_solid_mesh_find(mesh, 2, p->group, path, &g));
   PW_REQUIRE(g->nface > 0, PW_ERR_SCENE, "%s: the surface '%s' has no triangles", path, g->name);
-  l->n = g->nnode;
-  PW_TRY(pw_mem_alloc("traction: nodes", l->n, sizeof *l->node, &l->node));
-  PW_TRY(pw_mem_alloc("traction: forces", 3 * (pw_off)l->n, sizeof *l->force, &l->force));
-  for (pw_idx i = 0; i < l->n; i++) {
-    l->node[i] = g->node[i];
-  }
   surface on = {.area = 0.0};
   pw_status status =
       pw_mem_alloc("traction: filled cells", sim->mesh.npatch, sizeof *on.filled, &on.filled);
@@ -219,7 +268,7 @@ static pw_status create_traction(pw_implicit *sim, const pw_solid_mesh *mesh, co
                            : status;
   status = status == PW_OK ? find_faces(sim, mesh, g, l, &on) : status;
   if (status == PW_OK) {
-    spread(sim, mesh, g, &on, l);
+    status = (p->follower ? create_follower : create_dead)(sim, mesh, g, &on, l);
   }
   pw_mem_free(&on.filled);
   pw_mem_free(&on.face);
@@ -232,6 +281,9 @@ static void apply_traction(pw_implicit *sim, void *ctx, pw_real from, pw_real to
   const size_t nnode = (size_t)sim->mesh.tets.nnode;
   const pw_real part = pw_solid_course(sim, l->ramp->start_step, l->ramp->ramp_steps, to);
   (void)from;
+  if (l->surface) {
+    l->surface->pressure = part * ((const pw_traction_param *)l->param)->pressure_pa;
+  }
   for (pw_idx i = 0; i < l->n; i++) {
     for (size_t c = 0; c < 3; c++) {
       sim->model.external[c * nnode + (size_t)l->node[i]] += part * l->force[3 * i + (pw_idx)c];
@@ -243,22 +295,46 @@ static void history_traction(const pw_implicit *sim, void *ctx, pw_record *row)
 {
   const load *l = ctx;
   char name[64];
+  pw_real sum[3];
   (void)sim;
+  if (l->surface) {
+    pw_tet_follow_sum(l->surface, sum);
+  }
   for (int c = 0; c < 3; c++) {
-    if (l->sum[c] != 0.0) {
+    if (l->surface || l->sum[c] != 0.0) {
       snprintf(name, sizeof name, "traction_%d_force_%c_n", l->number, "xyz"[c]);
-      pw_record_put(row, name, l->part * l->sum[c]);
+      pw_record_put(row, name, l->surface ? sum[c] : l->part * l->sum[c]);
     }
   }
+}
+
+static pw_status archive_surface(const pw_implicit *sim, load *l, pw_archive *ar)
+{
+  pw_tet_follow *f = l->surface;
+  char name[64];
+  snprintf(name, sizeof name, "traction_%d/x", l->number);
+  PW_TRY(ar->real(ar, name, f->x, 3 * (pw_off)f->n));
+  snprintf(name, sizeof name, "traction_%d/area", l->number);
+  PW_TRY(ar->real(ar, name, f->area, 3 * (pw_off)f->n));
+  snprintf(name, sizeof name, "traction_%d/pressure", l->number);
+  PW_TRY(ar->real(ar, name, &f->pressure, 1));
+  snprintf(name, sizeof name, "traction_%d/element", l->number);
+  PW_TRY(ar->index(ar, name, f->elem, f->n));
+  for (pw_idx i = 0; i < f->n; i++) {
+    PW_REQUIRE(f->elem[i] >= 0 && f->elem[i] < sim->mesh.tets.nelem, PW_ERR_FILE,
+               "the checkpoint's loaded surface is damaged");
+  }
+  return PW_OK;
 }
 
 static pw_status archive_load(pw_implicit *sim, void *ctx, pw_archive *ar)
 {
   load *l = ctx;
   char name[64];
-  (void)sim;
-  snprintf(name, sizeof name, "%s_%d/part", l->force ? "traction" : "gravity", l->number);
-  return ar->real(ar, name, &l->part, 1);
+  const bool traction = l->force || l->surface;
+  snprintf(name, sizeof name, "%s_%d/part", traction ? "traction" : "gravity", l->number);
+  PW_TRY(ar->real(ar, name, &l->part, 1));
+  return l->surface ? archive_surface(sim, l, ar) : PW_OK;
 }
 
 static pw_status create_gravity(pw_implicit *sim, const pw_solid_mesh *mesh, const void *param,

@@ -4,6 +4,7 @@
 
 #include <string.h>
 
+#include "engine/points.h"
 #include "engine/tet_loads.h"
 
 #define AT(member) offsetof(pw_solid_stress_param, member)
@@ -124,6 +125,11 @@ void pw_solid_model_options(const pw_scene *scene, pw_tet_setup *setup, pw_newto
   if (ghost) {
     setup->ghost = ghost->stiffness_pa;
   }
+  for (int e = 0; e < scene->neffect; e++) {
+    const pw_traction_param *p = (const void *)scene->effect[e].param;
+    const bool traction = scene->effect[e].type == &pw_effect_traction;
+    setup->follower = setup->follower || (traction && p->follower);
+  }
   if (d) {
     options->newmark = (pw_newmark){.on = true,
                                     .beta = d->beta,
@@ -137,7 +143,11 @@ void pw_solid_model_options(const pw_scene *scene, pw_tet_setup *setup, pw_newto
 static pw_status check_dynamics(const pw_scene *scene, const void *param)
 {
   const pw_dynamics_param *p = param;
-  (void)scene;
+  const bool grid = scene->geometry != PW_SOLID;
+  PW_REQUIRE(!grid || scene->method.update == PW_IMPLICIT, PW_ERR_SCENE,
+             "explicit steps have their own inertia (method.update: implicit needs this one)");
+  PW_REQUIRE(!grid || p->mass == 0, PW_ERR_SCENE, "mass: on a grid masses are lumped");
+  PW_REQUIRE(!grid || p->rates == 0, PW_ERR_SCENE, "rates: on a grid they go with the points");
   PW_REQUIRE(p->gamma <= 2.0 * p->beta + 0.5, PW_ERR_SCENE,
              "gamma: it must not be above 2 beta + 0.5 = %g", 2.0 * p->beta + 0.5);
   return PW_OK;
@@ -149,6 +159,17 @@ static void history_dynamics(const pw_implicit *sim, void *ctx, pw_record *row)
   pw_record_put(row, "kinetic_j", pw_tet_points_kinetic(&sim->model.points));
 }
 
+static pw_status check_ghost(const pw_scene *scene, const void *param)
+{
+  (void)param;
+  PW_REQUIRE(scene->geometry == PW_SOLID || scene->method.update == PW_IMPLICIT, PW_ERR_SCENE,
+             "explicit steps know no stabilisation of cut cells (method.update: implicit does)");
+  return PW_OK;
+}
+
+/* engine/quad_ghost.h and engine/quad_inertia.h do it. */
+static const pw_hook no_hooks[] = {{0, NULL}};
+
 static const pw_solid_hooks ghost_hooks = {.create = create_nothing};
 static const pw_solid_hooks dynamics_hooks = {.create = create_nothing,
                                               .history = history_dynamics};
@@ -157,13 +178,17 @@ const pw_effect pw_effect_ghost = {
     .name = "ghost_stabilisation",
     .brief = "barely filled elements follow their neighbours (Coombs 2023)",
     .keys = ghost_keys,
+    .implicit = no_hooks,
+    .check = check_ghost,
     .solid = &ghost_hooks,
 };
 
 const pw_effect pw_effect_dynamics = {
     .name = "dynamics",
     .brief = "inertia, by Newmark's method; step_s is then the time of a step",
+    .point_fields = PW_FIELD_BIT(PW_FIELD_ACCELERATION),
     .keys = dynamics_keys,
+    .implicit = no_hooks,
     .check = check_dynamics,
     .solid = &dynamics_hooks,
 };

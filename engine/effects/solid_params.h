@@ -82,7 +82,8 @@ typedef enum pw_traction_kind {
 /** traction (many): load on a surface of the mesh. */
 typedef struct pw_traction_param {
   char group[PW_NAME];
-  int kind; /**< pw_traction_kind */
+  int kind;      /**< pw_traction_kind */
+  bool follower; /**< the pressure follows the surface */
   pw_real pressure_pa, traction_pa[3], force_n[3];
   pw_solid_ramp ramp;
 } pw_traction_param;
@@ -116,7 +117,7 @@ typedef struct pw_dynamics_param {
   pw_real beta, gamma, damping_per_s;
 } pw_dynamics_param;
 
-/** @brief What ghost_stabilisation and dynamics ask for, when the scene has them. */
+/** @brief What ghost_stabilisation, dynamics and tractions ask for, when the scene has them. */
 void pw_solid_model_options(const pw_scene *scene, pw_tet_setup *setup, pw_newton_options *options);
 
 /** tracer (many). */
@@ -134,6 +135,7 @@ typedef struct pw_stress_record_param {
 } pw_stress_record_param;
 
 extern const pw_effect pw_effect_solid_initial_stress, pw_effect_ghost, pw_effect_dynamics;
+extern const pw_effect pw_effect_traction;
 
 /** @brief The entry of driven_boundary of a scene, or NULL. */
 const pw_driven_boundary_param *pw_solid_driven_param(const pw_scene *scene);

@@ -31,7 +31,7 @@ typedef struct surcharge {
 static pw_status add_force(pw_sim *sim, void *ctx)
 {
   surcharge *c = ctx;
-  pw_real factor = pw_ramp_mean(sim->time, sim->dt, c->param->start_s, c->param->ramp_s);
+  pw_real factor = pw_effect_ramp(sim, c->param->start_s, c->param->ramp_s);
   c->on = factor > 0.0;
   if (c->on) {
     pw_surface_load_apply(sim, &c->load, c->param->pressure_pa * factor);
@@ -78,6 +78,7 @@ const pw_effect pw_effect_surcharge = {
     .many = true,
     .keys = keys,
     .hooks = hooks,
+    .implicit = hooks,
     .create = create,
     .destroy = destroy,
 };

@@ -221,6 +221,8 @@ static PetscErrorCode give_motions(petsc_system *s, const pw_csr *m)
 static PetscErrorCode new_pattern(petsc_system *s, const pw_csr *m)
 {
   TRY_PETSC(drop(s));
+  TRY_PETSC(KSPDestroy(&s->ksp)); /* multigrid that is reset keeps the sizes of its levels */
+  TRY_PETSC(set_up(s));
   TRY_PETSC(number_rows(s, m));
   TRY_PETSC(take_pattern(s, m));
   TRY_PETSC(PetscArrayzero(s->value, s->start[s->n]));
