@@ -58,12 +58,17 @@ pw_status pw_scene_check_time(const pw_scene *s)
 {
   PW_REQUIRE(s->time.dt_s <= s->time.dt_max_s, PW_ERR_SCENE,
              "dt_s = %g s is larger than dt_max_s = %g s", s->time.dt_s, s->time.dt_max_s);
+  PW_REQUIRE(s->method.update != PW_IMPLICIT || !(s->time.dt_s > 0), PW_ERR_SCENE,
+             "dt_s: implicit steps (method.update) take end_s / implicit.steps = %g s",
+             s->time.end_s / s->solid.implicit.steps);
   return PW_OK;
 }
 
 pw_status pw_scene_check_method(const pw_scene *s)
 {
   const int ratio = s->method.step_ratio_max;
+  PW_REQUIRE(s->method.update != PW_IMPLICIT || !(s->method.noise_damping_per_s > 0), PW_ERR_SCENE,
+             "noise_damping_per_s: implicit steps do not know it");
   PW_REQUIRE(ratio <= 1 || s->method.update == PW_MUSL, PW_ERR_SCENE,
              "step_ratio_max = %d needs update: musl", ratio);
   for (int e = 0; ratio > 1 && e < s->neffect; e++) {

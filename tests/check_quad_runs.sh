@@ -39,7 +39,7 @@ expect_refused() {
   expect_text stderr "$text"
 }
 sed 's/^gravity.*/&\nhammer: {body: block, pressure_pa: 1, duration_s: 1}/' "$slump" >hammer.yaml
-expect_refused 'hammer.yaml:13:[0-9]+: error: hammer: implicit steps .* do not know' hammer.yaml
+expect_refused 'hammer.yaml:13:[0-9]+: error: hammer: implicit steps .* with dynamics only' hammer.yaml
 sed 's/^gravity.*/&\nfbar: {}/' "$slump" >fbar.yaml
 expect_refused 'fbar.yaml:13:[0-9]+: error: fbar: implicit steps .* do not know' fbar.yaml
 sed 's/point_size_m: 0.0625/&, velocity_m_s: [1, 0]/' "$slump" >moving.yaml
@@ -56,6 +56,8 @@ sed 's/^gravity.*/&\ndynamics: {}\ndamping_local: [{coefficient: 0.1}]/' "$slump
 expect_refused 'damped.yaml:14:[0-9]+: error: implicit steps know it in equilibrium' damped.yaml
 sed 's/^gravity.*/&\ndynamics: {mass: consistent}/' "$slump" >mass.yaml
 expect_refused 'mass.yaml:13:18: error: mass: on a grid masses are lumped' mass.yaml
+expect_refused 'dt_s: implicit steps .* = 0.025 s' "$slump" --set time.dt_s=0.01
+expect_refused 'noise_damping_per_s: implicit steps' "$slump" --set method.noise_damping_per_s=1
 expect_refused 'implicit.fbar.*' "$slump" --set implicit.fbar=none
 
 # Interrupted and killed, with inertia.
@@ -66,7 +68,7 @@ for ((i = 0; i <= kills; i++)); do
   signal=$([ $i -eq 0 ] && echo INT || echo KILL)
   env --default-signal=INT "$program" run "$slump" $plain --out again_$i >stdout 2>stderr &
   pid=$!
-  until [ "$(wc -l 2>/dev/null <again_$i/history.csv || echo 0)" -ge $((2 + RANDOM % (rows / 2))) ] ||
+  until [ "$(wc -l 2>/dev/null <again_$i/history.csv || echo 0)" -ge $((4 + RANDOM % (rows / 2))) ] ||
     ! kill -0 $pid 2>/dev/null; do
     sleep 0.01
   done

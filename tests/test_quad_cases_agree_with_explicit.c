@@ -3,6 +3,7 @@
  * column settles as far, and the biaxial test of sand follows the reference curve of the material
  * (reference/hypoplastic/a1_biaxial_e065.csv: peak q = 309.133 kPa at eps_yy = -0.0287). */
 #include "engine/step_implicit.h"
+#include "kernels/element_driver.h"
 #include "tests/case_helpers.h"
 #include "tests/hypoplastic_reference.h"
 
@@ -67,11 +68,84 @@ static void sand_follows_its_curve(void **state)
   table_free(&t);
 }
 
+/* Settlement of the mean of a column whose parts are compressed one by one, as elements of material,
+ * to the weight above them: y(Y) is the integral of exp(strain at rho0 g (H - Y)). */
+static double settlement_of_elements(const pw_scene_material *m, double unit_weight, double height)
+{
+  enum { PARTS = 2000 };
+  static double stretch[PARTS];
+  const double start[6] = {0.0}, de[6] = {0.0, -1e-6, 0.0, 0.0, 0.0, 0.0};
+  double strain = 0.0, before = 0.0, y = 0.0, mean = 0.0;
+  pw_element el;
+  assert_ok(pw_element_start(&el, m->model, m->param, start));
+  for (int k = PARTS - 1; k >= 0; k--) { /* from the surface down */
+    const double wanted = unit_weight * height * (1.0 - (k + 0.5) / PARTS);
+    while (-el.stress[1] < wanted) {
+      before = -el.stress[1];
+      assert_ok(pw_element_move(&el, de, NULL, NULL));
+      strain -= 1e-6;
+    }
+    const double part = (wanted - before) / (-el.stress[1] - before);
+    stretch[k] = exp(strain + 1e-6 * (1.0 - part));
+  }
+  for (int k = 0; k < PARTS; k++) {
+    mean += (y + 0.5 * stretch[k]) / PARTS;
+    y += stretch[k];
+  }
+  return height * (0.5 - mean / PARTS);
+}
+
+static void sand_column_settles_as_its_elements(void **state)
+{
+  (void)state;
+  const char *const set[] = {"method.update=implicit", "implicit.steps=100"};
+  pw_sim *sim = run_case("geostatic_column/damped.yaml", 2, set);
+  const pw_scene_material *m = &sim->scene.material[0];
+  const double want = settlement_of_elements(m, 10.0 * m->model->density(m->param), 10.0);
+  const double found = 5.0 - test_history(sim, "soil_y_m");
+  print_message("settlement of the mean: %.6g m, of elements %.6g m\n", found, want);
+  assert_relative(found, want, 0.005);
+  pw_sim_destroy(&sim);
+}
+
+/* The pile that is struck flies off with the impulse of the hammer over its mass, 8 mm/s for 1 kPa;
+ * while it is struck its head moves as d'Alembert says: 2 mm/s, and 6 mm/s when the wave is back
+ * after 0.05 s. */
+static void struck_pile_flies_off(void **state)
+{
+  (void)state;
+  const char *const set[] = {"method.update=implicit", "implicit.steps=500", "dynamics={}",
+                             "hammer.rise_s=0.005", "hammer.pressure_pa=1000"};
+  double worst = 0.0;
+  pw_sim *sim = test_case("bar_wave/free_toe.yaml", 5, set);
+  const pw_points *p = &sim->points;
+  while (sim->time < sim->scene.time.end_s) {
+    assert_ok(pw_sim_step(sim, 0.0));
+    const double exact = sim->time < 0.05 ? -2e-3 : -6e-3;
+    const bool flat =
+        (sim->time > 0.01 && sim->time < 0.045) || (sim->time > 0.06 && sim->time < 0.095);
+    double head = 0.0, top = 0.0;
+    for (pw_idx i = 0; i < p->n; i++) {
+      head = p->x[p->ld + i] > top ? p->v[p->ld + i] : head;
+      top = fmax(top, p->x[p->ld + i]);
+    }
+    worst = flat ? fmax(worst, fabs(head - exact)) : worst;
+  }
+  print_message("%d steps, %d iterations: head within %.2e m/s, at the end %.12f m/s\n",
+                (int)sim->step, (int)sim->quad->iterations, worst,
+                test_history(sim, "pile_velocity_y_m_s"));
+  assert_near(test_history(sim, "pile_velocity_y_m_s"), -8e-3, 1e-12);
+  assert_true(worst < 1e-4);
+  pw_sim_destroy(&sim);
+}
+
 int main(void)
 {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(elastic_column_settles_as_far),
       cmocka_unit_test(sand_follows_its_curve),
+      cmocka_unit_test(sand_column_settles_as_its_elements),
+      cmocka_unit_test(struck_pile_flies_off),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -126,11 +126,58 @@ static void thick_cylinder_widens_as_lame_says(void **state)
   }
 }
 
+/* Two layers of elastic soil and of hypoplastic sand with ground water, at rest under their weight
+ * and a surcharge: nothing is out of balance, and nothing moves. */
+static void ground_stays_at_rest(void **state)
+{
+  (void)state;
+  static pw_scene s;
+  static double start[2][512];
+  test_quad_scene(&s, PW_PLANE, PW_CPDI, (pw_real[]){0.0, 1.0, 0.0, 10.5}, 0.5, 3);
+  const int soil = test_elastic(&s, 5e7, 0.3, 1600.0), sand = test_sand(&s, true);
+  test_rectangle(&s, sand, (pw_real[]){0.0, 1.0, 0.0, 6.0}, 0.25);
+  test_rectangle(&s, soil, (pw_real[]){0.0, 1.0, 6.0, 10.0}, 0.25);
+  pw_initial_stress_param *p = pw_scene_add_effect(&s, "initial_stress");
+  p->kind = PW_STRESS_LAYERS;
+  p->nlayer = 2;
+  p->layer[0] = (pw_ground_layer){.body = 1, .k0 = 0.5, .porosity = 0.4};
+  p->layer[1] = (pw_ground_layer){.body = 0, .k0 = 0.42};
+  p->surcharge_pa = 5e3;
+  p->water_table_y_m = 8.0;
+  p->water_inertia = true;
+  test_gravity(&s, 0.0);
+  pw_surcharge_param *load = pw_scene_add_effect(&s, "surcharge");
+  load->body = 1;
+  load->side = PW_SIDE_TOP;
+  load->pressure_pa = 5e3;
+  test_roller(&s, PW_SIDE_BOTTOM);
+  test_roller(&s, PW_SIDE_LEFT);
+  test_roller(&s, PW_SIDE_RIGHT);
+  pw_sim *sim = test_sim(&s, 1);
+  const pw_points *q = &sim->points;
+  pw_record row;
+  assert_true(q->n <= 512);
+  for (pw_idx i = 0; i < q->n; i++) {
+    start[0][q->id[i]] = q->x[q->ld + i];
+    start[1][q->id[i]] = q->stress[q->ld + i];
+  }
+  test_quad_run(sim);
+  for (pw_idx i = 0; i < q->n; i++) {
+    assert_near(q->x[q->ld + i], start[0][q->id[i]], 1e-12);
+    assert_relative(q->stress[q->ld + i], start[1][q->id[i]], 1e-9);
+  }
+  pw_sim_results(sim, &row);
+  assert_true(value_of(&row, "initial_residual_relative") < 1e-12);
+  assert_true(value_of(&row, "initial_residual_n") >= 0.0);
+  pw_sim_destroy(&sim);
+}
+
 int main(void)
 {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(uniform_stretch_is_exact),
       cmocka_unit_test(thick_cylinder_widens_as_lame_says),
+      cmocka_unit_test(ground_stays_at_rest),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

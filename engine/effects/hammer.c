@@ -37,6 +37,8 @@ static pw_status check(const pw_scene *scene, const void *param)
 {
   const pw_hammer_param *p = param;
   const pw_scene_body *b = &scene->body[p->body];
+  PW_REQUIRE(scene->method.update != PW_IMPLICIT || pw_scene_find_effect(scene, "dynamics"),
+             PW_ERR_SCENE, "hammer: implicit steps (method.update) know it with dynamics only");
   PW_REQUIRE(b->kind == PW_BODY_POINTS || b->shape != PW_SHAPE_DISC, PW_ERR_SCENE,
              "body: the disc '%s' has no head that a hammer could strike", b->name);
   PW_REQUIRE(p->rise_s <= p->duration_s, PW_ERR_SCENE,
@@ -71,6 +73,26 @@ static pw_status add_work(pw_sim *sim, void *ctx)
     sim->energy.external += pw_surface_load_work(sim, &c->load);
   }
   return PW_OK;
+}
+
+/* Implicit steps: the mean over the part acts at its end, so that the whole impulse is given. At rest,
+ * before the first step, nothing acts yet. */
+static pw_status press(pw_sim *sim, void *ctx)
+{
+  hammer *c = ctx;
+  pw_real factor = sim->dt > 0.0 ? pw_pulse_mean(&c->pulse, sim->time, sim->dt) : 0.0;
+  c->force = 0.0;
+  if (factor > 0.0) {
+    c->force = pw_surface_load_apply(sim, &c->load, c->param->pressure_pa * factor);
+  }
+  return PW_OK;
+}
+
+static pw_status add_impulse(pw_sim *sim, void *ctx)
+{
+  hammer *c = ctx;
+  c->impulse += c->force * sim->dt;
+  return add_work(sim, ctx);
 }
 
 static void history(const pw_sim *sim, void *ctx, pw_record *row)
@@ -122,12 +144,19 @@ static const pw_hook hooks[] = {
     {0, NULL},
 };
 
+static const pw_hook implicit_hooks[] = {
+    {PW_STAGE_NODE_FORCE, press},
+    {PW_STAGE_END, add_impulse},
+    {0, NULL},
+};
+
 const pw_effect pw_effect_hammer = {
     .name = "hammer",
     .brief = "pulses of pressure on the top of a body",
     .structure_key = "body",
     .keys = keys,
     .hooks = hooks,
+    .implicit = implicit_hooks,
     .check = check,
     .create = create,
     .destroy = destroy,
