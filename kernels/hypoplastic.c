@@ -41,8 +41,10 @@ void pw_hypo_derive(const pw_real *param, pw_hypo *h)
   h->x_limit = (9.0 - sin_l * sin_l) / (1.0 - sin_l * sin_l);
   h->max_substeps = (int)param[PW_HYPO_MAX_SUBSTEPS];
   h->intergranular = param[PW_HYPO_INTERGRANULAR] > 0.5;
+  h->inv_r = h->intergranular ? 1.0 / h->r : 0.0;
   bool unit = beta == 1.0 && (h->chi == 1.0 || !h->intergranular);
   h->form = (h->intergranular ? PW_HYPO_WITH : 0) + (unit ? PW_HYPO_UNIT : 0);
+  h->near = 0.25 / pw_max(pw_max(1.0, h->alpha), beta); /* less for powers above one */
   h->speed_linear = h->intergranular ? 1.1 * h->m_r : 1.0;
   h->speed_n = h->intergranular ? 0.0 : 1.0;
 }

@@ -12,7 +12,8 @@
  *     with it:  sigma_dot = M:D,  delta_dot = D - rho^beta_r d (d:D) if d:D > 0, else D
  *
  * Stress is integrated in the time of the increment, t in [0, 1], by an embedded Runge-Kutta pair
- * of orders 3(2) with error control, in two parts where delta:D changes sign. States below the
+ * of orders 3(2) with error control, in two parts where delta:D changes sign. An
+ * increment for which Heun's method is within the tolerance is one step of that. States below the
  * least pressure or beyond the limiting stress ratio are moved back to it.
  */
 #ifndef PW_KERNELS_HYPOPLASTIC_H
@@ -68,6 +69,8 @@ typedef struct pw_hypo {
   pw_real e_d0, e_i0, e_c0, log_e_c0, inv_e_i0, inv_e_range; /**< 1/(e_c0 - e_d0) */
   pw_real a, a2, k_b; /**< k_b: f_b without its pressure and void ratio terms; Pa */
   pw_real m_r, m_t, r, inv_r2, beta_r, chi;
+  pw_real inv_r; /**< 0 without intergranular strain */
+  pw_real near;  /**< largest relative change of a base over which powers follow by series */
   pw_real tolerance, p_min, x_limit; /**< x_limit: largest I1 I2 / I3 */
   pw_real speed_linear, speed_n;     /**< parts of L and N in the modulus of the wave speed */
   int max_substeps;
@@ -92,8 +95,8 @@ typedef struct pw_hypo_rates {
 } pw_hypo_rates;
 
 /** How a substep was made: by the Runge-Kutta pair; by it, and delta then fully mobilised in the
- *  direction of the increment; as a whole, for a point that stays stress-free. */
-enum { PW_HYPO_RUNGE_KUTTA, PW_HYPO_SWEPT, PW_HYPO_SEPARATED };
+ *  direction of the increment; as a whole, for a point that stays stress-free; by Heun's method. */
+enum { PW_HYPO_RUNGE_KUTTA, PW_HYPO_SWEPT, PW_HYPO_SEPARATED, PW_HYPO_HEUN };
 
 /** The accepted substeps of an integration, to repeat it with another increment. */
 typedef struct pw_hypo_path {

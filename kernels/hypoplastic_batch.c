@@ -9,14 +9,26 @@ typedef pw_real lane_tensor[6][LANES];
 
 /** A group of points; lanes past the last point repeat it and are not written back. */
 typedef struct group {
+  pw_idx first;
+  int n;                         /* points, from `first` on */
   lane_tensor stress, delta, de; /* sigma* and delta, rotated */
   pw_real size[LANES], void_ratio[LANES], dvol[LANES], step[LANES];
   pw_real able[LANES]; /* 1 where one substep does */
   lane_tensor k[3], d[3], at, at_delta;
   pw_real void_mid[LANES], void_end[LANES], modulus[LANES], error[LANES];
+  pw_real small[LANES]; /* 1 where a step of Heun's method is tried */
 } group;
 
 PW_HYPO_STAGES(stages, LANES);
+
+#define HEUN(form)                                                                                 \
+  static void heun_##form(const pw_hypo *h, const pw_hypo_substep *s, pw_real *good)               \
+  {                                                                                                \
+    pw_hypo_heun_lanes(h, s, good, LANES, form);                                                   \
+  }
+HEUN(1)
+HEUN(3)
+static const pw_hypo_heun_fn heun[PW_HYPO_FORMS] = {NULL, heun_1, NULL, heun_3};
 
 static void copy_rows(const pw_real *from, size_t ld, int rows, pw_idx first, int n, pw_real *to)
 {
@@ -32,16 +44,13 @@ static void copy_rows(const pw_real *from, size_t ld, int rows, pw_idx first, in
   }
 }
 
-/** Replace rows by those of @p from where @p stands is positive. */
-PW_INLINE void merge_rows(pw_real (*from)[LANES], const pw_real *stands, int n, size_t ld,
-                          pw_real *to)
+/** Replace a row by @p from where @p stands is positive. */
+PW_INLINE void merge(const pw_real *from, const pw_real *stands, int n, pw_real *row)
 {
-  for (int c = 0; c < 6; c++) {
-    pw_real *row = to + (size_t)c * ld;
 #pragma omp simd
-    for (int i = 0; i < n; i++) {
-      row[i] = stands[i] > 0.0 ? from[c][i] : row[i];
-    }
+  for (int i = 0; i < n; i++) {
+    pw_real was = row[i], is = from[i];
+    row[i] = stands[i] > 0.0 ? is : was;
   }
 }
 
@@ -68,10 +77,11 @@ static void rotate(const pw_hypo *h, pw_real spin[3][LANES], bool plane, group *
   }
 }
 
-/** Read @p n points from @p first on and rotate them; how many lanes one substep may do for. */
-static pw_real gather(const pw_hypo *h, const pw_stress_args *a, bool plane, pw_idx first, int n,
-                      group *g)
+/** Read the points of a group and rotate them. */
+static void gather(const pw_hypo *h, const pw_stress_args *a, bool plane, group *g)
 {
+  const pw_idx first = g->first;
+  const int n = g->n;
   size_t ld = (size_t)a->ld, ldi = (size_t)a->ldi;
   pw_real spin[3][LANES], substep[LANES];
   copy_rows(a->stress, ld, 6, first, n, g->at[0]);
@@ -88,63 +98,103 @@ static pw_real gather(const pw_hypo *h, const pw_stress_args *a, bool plane, pw_
   } else {
     memset(g->at_delta, 0, sizeof g->at_delta);
   }
+  for (int i = 0; i < LANES; i++) {
+    g->able[i] = substep[i] >= 1.0 ? 1.0 : 0.0;
+  }
   rotate(h, spin, plane, g);
-  const pw_real least = -3.0 * h->p_min * (1.0 + 1e-9);
-  pw_real count = 0.0;
-#pragma omp simd reduction(+ : count)
+}
+
+/** Choose the lanes that one substep may do for: small ones by a step of Heun's method where
+ *  @p heun, others by three stages; how many of each. */
+static void choose(const pw_hypo *h, bool heun_too, group *g, pw_real count[2])
+{
+  const pw_hypo c = *h;
+  const pw_real least = -3.0 * c.p_min * (1.0 + 1e-9), tried = heun_too ? 1.0 : 0.0;
+  pw_real small = 0.0, other = 0.0;
+#pragma omp simd reduction(+ : small, other)
   for (int i = 0; i < LANES; i++) {
     pw_t6 de = pw_t6_load(&g->de[0][i], LANES);
     pw_real size2 = pw_t6_dot(de, de), turn = -pw_t6_dot(pw_t6_load(&g->delta[0][i], LANES), de);
     /* delta:D changes sign at the time turn / size2 */
     pw_real straight = turn <= 1e-6 * size2 ? 1.0 : (turn >= (1.0 - 1e-6) * size2 ? 1.0 : 0.0);
     pw_real trace = g->stress[0][i] + g->stress[1][i] + g->stress[2][i];
-    pw_real specific = 1.0 + g->void_ratio[i];
     g->size[i] = sqrt(size2);
-    g->void_mid[i] = specific * sqrt(g->dvol[i]) - 1.0;
-    g->void_end[i] = specific * g->dvol[i] - 1.0;
+    g->void_end[i] = (1.0 + g->void_ratio[i]) * g->dvol[i] - 1.0;
     pw_real pressed = trace < least ? straight : 0.0; /* not stress-free */
-    pw_real voids = g->void_end[i] > 1e-9 ? pressed : 0.0;
-    g->able[i] = substep[i] >= 1.0 ? voids : 0.0;
-    count += g->able[i];
+    pw_real able = g->void_end[i] > 1e-9 ? pressed * g->able[i] : 0.0;
+    g->small[i] = able * tried * pw_hypo_heun_pays(&c, g->size[i]);
+    g->able[i] = able - g->small[i];
+    small += g->small[i];
+    other += g->able[i];
   }
-  return count;
+  count[0] = small;
+  count[1] = other;
 }
 
 /** Write the lanes that stand; how many. */
-PW_INLINE int scatter(const pw_hypo *h, const pw_stress_args *a, group *g, pw_idx first, int n,
-                      pw_real *done)
+PW_INLINE int scatter(const pw_hypo *h, const pw_stress_args *a, group *g, const pw_real *stands,
+                      int n, pw_real *done)
 {
   const size_t ld = (size_t)a->ld;
-  const pw_real tolerance = h->tolerance, p_t = h->p_t;
-  pw_real count = 0.0;
+  const pw_idx first = g->first;
+  const pw_real p_t = h->p_t;
+  pw_real count = 0.0, speed[LANES];
 #pragma omp simd reduction(+ : count)
   for (int i = 0; i < n; i++) {
-    pw_real stands = g->error[i] <= tolerance ? g->able[i] : 0.0;
-    done[i] = stands;
-    count += stands;
+    done[first + i] += stands[i];
+    count += stands[i];
     g->at[0][i] += p_t;
     g->at[1][i] += p_t;
     g->at[2][i] += p_t;
-    pw_real void_ratio = a->state[first + i];
-    a->state[first + i] = stands > 0.0 ? g->void_end[i] : void_ratio;
-    a->wave_speed[first + i] = sqrt(g->modulus[i] / a->density[first + i]);
+    speed[i] = sqrt(g->modulus[i] / a->density[first + i]);
   }
-  merge_rows(g->at, done, n, ld, a->stress + first);
-  if (h->intergranular) {
-    merge_rows(g->at_delta, done, n, ld, a->state + PW_HYPO_STATE_DELTA * ld + first);
+  merge(speed, stands, n, a->wave_speed + first);
+  merge(g->void_end, stands, n, a->state + first);
+  for (size_t c = 0; c < 6; c++) {
+    merge(g->at[c], stands, n, a->stress + c * ld + first);
+  }
+  for (size_t c = 0; c < 6 && h->intergranular; c++) {
+    merge(g->at_delta[c], stands, n, a->state + (PW_HYPO_STATE_DELTA + c) * ld + first);
   }
   return (int)count;
 }
 
-void pw_hypo_advance_smooth(const pw_hypo *h, bool plane, const pw_stress_args *a, pw_real *done)
+/** Write the lanes that stand after a substep of @p rhs evaluations. */
+static void write_lanes(const pw_hypo *h, const pw_stress_args *a, group *g, const pw_real *stands,
+                        int rhs, pw_real *done)
 {
-  pw_hypo_smooth_with(h, stages[h->form], plane, a, done);
+  int count =
+      g->n == LANES ? scatter(h, a, g, stands, LANES, done) : scatter(h, a, g, stands, g->n, done);
+  if (a->counts) {
+    a->counts->substeps += count;
+    a->counts->rhs += rhs * count;
+  }
 }
 
-void pw_hypo_smooth_with(const pw_hypo *h, const pw_hypo_stage_fn rates[2], bool plane,
-                         const pw_stress_args *a, pw_real *done)
+/** A substep of three stages; able stays 1 where it stands. */
+static void three_stages(const pw_hypo *h, const pw_hypo_substep *s,
+                         const pw_hypo_stage_fn rates[2], group *g)
+{
+  for (int i = 0; i < LANES; i++) {
+    g->void_mid[i] = (1.0 + g->void_ratio[i]) * sqrt(g->dvol[i]) - 1.0;
+  }
+  pw_hypo_substep_lanes(h, s, LANES, rates);
+  for (int i = 0; i < LANES; i++) {
+    g->able[i] = g->error[i] <= h->tolerance ? g->able[i] : 0.0;
+  }
+}
+
+void pw_hypo_advance_smooth(const pw_hypo *h, bool plane, const pw_stress_args *a, pw_real *done)
+{
+  pw_hypo_smooth_with(h, stages[h->form], heun[h->form], plane, a, done);
+}
+
+void pw_hypo_smooth_with(const pw_hypo *h, const pw_hypo_stage_fn rates[2],
+                         pw_hypo_heun_fn heun_lanes, bool plane, const pw_stress_args *a,
+                         pw_real *done)
 {
   group g;
+  pw_real count[2]; /* of lanes that try a step of Heun's method, of others */
   const pw_hypo_substep s = {g.stress[0],
                              g.delta[0],
                              g.de[0],
@@ -158,18 +208,18 @@ void pw_hypo_smooth_with(const pw_hypo *h, const pw_hypo_stage_fn rates[2], bool
                              g.able,
                              g.modulus,
                              g.error};
-  for (pw_idx first = 0; first < a->n; first += LANES) {
-    int n = a->n - first < LANES ? (int)(a->n - first) : LANES;
-    if (gather(h, a, plane, first, n, &g) == 0.0) {
-      memset(done + first, 0, (size_t)n * sizeof *done);
-      continue;
+  memset(done, 0, (size_t)a->n * sizeof *done);
+  for (g.first = 0; g.first < a->n; g.first += LANES) {
+    g.n = a->n - g.first < LANES ? (int)(a->n - g.first) : LANES;
+    gather(h, a, plane, &g);
+    choose(h, heun_lanes != NULL, &g, count);
+    if (count[0] > 0.0) {
+      heun_lanes(h, &s, g.small);
+      write_lanes(h, a, &g, g.small, 2, done);
     }
-    pw_hypo_substep_lanes(h, &s, LANES, rates);
-    int count = n == LANES ? scatter(h, a, &g, first, LANES, done + first)
-                           : scatter(h, a, &g, first, n, done + first);
-    if (a->counts) {
-      a->counts->substeps += count;
-      a->counts->rhs += 3 * count;
+    if (count[1] > 0.0) {
+      three_stages(h, &s, rates, &g);
+      write_lanes(h, a, &g, g.able, 3, done);
     }
   }
 }

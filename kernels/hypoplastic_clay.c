@@ -37,6 +37,7 @@ void pw_clay_derive(const pw_real *v, pw_clay *c)
   c->limits.tolerance = c->tolerance;
   c->limits.intergranular = c->intergranular;
   c->limits.r = c->r;
+  c->limits.inv_r = c->intergranular ? 1.0 / c->r : 0.0;
   c->limits.inv_r2 = c->inv_r2;
   c->limits.max_substeps = c->max_substeps;
 }

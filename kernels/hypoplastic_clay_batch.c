@@ -42,6 +42,6 @@ void pw_clay_advance(const pw_clay *c, bool plane, const pw_stress_args *a, pw_r
 {
   static const pw_hypo_stage_fn smooth[2][2] = {{smooth_0_0, smooth_0_1}, {smooth_1_0, smooth_1_1}};
   static const pw_hypo_stage_fn rest[2][2] = {{rest_0_0, rest_0_1}, {rest_1_0, rest_1_1}};
-  pw_hypo_smooth_with(&c->limits, smooth[c->intergranular], plane, a, done);
+  pw_hypo_smooth_with(&c->limits, smooth[c->intergranular], NULL, plane, a, done);
   pw_hypo_rest_with(&c->limits, rest[c->intergranular], plane, a, done);
 }

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "kernels/hypoplastic.h"
 
-#include "kernels/hypoplastic_rates.h"
+#include "kernels/hypoplastic_heun.h"
 
 /** One integration in progress; stresses are sigma* throughout. */
 typedef struct run {
@@ -58,13 +58,6 @@ PW_INLINE void stage(run *r, pw_t6 *stress, const pw_t6 *delta, pw_real t, pw_hy
   }
 }
 
-/** |delta| never exceeds R; only rounding and the truncation of a stage would make it. */
-PW_INLINE pw_t6 clip(const pw_hypo *h, pw_t6 delta)
-{
-  pw_real rho2 = pw_t6_dot(delta, delta) * h->inv_r2;
-  return rho2 > 1.0 ? pw_t6_scale(1.0 / sqrt(rho2), delta) : delta;
-}
-
 /** An embedded step of orders 3(2) from @p k1: nodes 0, 1/2, 1, weights 1/6, 2/3, 1/6. */
 PW_INLINE pw_real attempt(run *r, const pw_hypo_slope *k1, pw_real t, pw_real step, pw_t6 *stress,
                           pw_t6 *delta)
@@ -84,7 +77,7 @@ PW_INLINE pw_real attempt(run *r, const pw_hypo_slope *k1, pw_real t, pw_real st
   *stress = pw_t6_axpy(r->stress, sixth, sum);
   *delta = pw_t6_axpy(r->delta, sixth, sum_delta);
   pw_real on_stress = pw_t6_norm(err) / (pw_t6_norm(*stress) + 1000.0);
-  pw_real on_delta = r->h->intergranular ? pw_t6_norm(err_delta) / r->h->r : 0.0;
+  pw_real on_delta = pw_t6_norm(err_delta) * r->h->inv_r;
   return sixth * (on_delta > on_stress ? on_delta : on_stress); /* NaN when the stress is */
 }
 
@@ -109,7 +102,7 @@ static pw_t6 evolve_delta(const run *r, pw_real rest)
       move = pw_t6_axpy(step, turn > 0.0 ? -rho_beta * turn / dd : 0.0, at);
       at = pw_t6_axpy(delta, 0.5, move);
     }
-    delta = clip(h, pw_t6_axpy(delta, 1.0, move));
+    delta = pw_hypo_clip(h, pw_t6_axpy(delta, 1.0, move));
   }
   return delta;
 }
@@ -129,7 +122,7 @@ static void accept(run *r, pw_t6 stress, pw_t6 delta)
   r->stress = inside ? stress : pw_hypo_limit(r->h, stress);
   r->counts.cut_off += inside ? 0 : 1;
   if (r->h->intergranular) {
-    r->delta = clip(r->h, delta);
+    r->delta = pw_hypo_clip(r->h, delta);
   }
 }
 
@@ -163,6 +156,39 @@ static bool becomes_swept(run *r)
   }
   r->delta = full;
   r->swept = true;
+  return true;
+}
+
+/** One step of Heun's method, in one of the forms of the rates, each compiled on its own. */
+#define HEUN(form)                                                                                 \
+  static void heun_##form(const run *r, const pw_hypo_increment *whole, pw_hypo_heun *out)         \
+  {                                                                                                \
+    *out = pw_hypo_heun_step(r->h, r->stress, r->delta, *whole, form);                             \
+  }
+HEUN(1)
+HEUN(3)
+
+/** One step of Heun's method over the whole increment; true when it stands. */
+static bool one_step(run *r, pw_hypo_heun *to)
+{
+  pw_hypo_increment whole = {r->de, r->size, r->specific - 1.0, void_ratio_at(r, 1.0)};
+  r->counts.rhs += 2;
+  (r->h->form & PW_HYPO_UNIT ? heun_3 : heun_1)(r, &whole, to);
+  return to->good > 0.0;
+}
+
+/** Take the whole increment in one step of Heun's method where it is small enough; else false. */
+static bool small(run *r)
+{
+  pw_hypo_heun to;
+  bool pressed = -pw_t6_trace(r->stress) > 3.0 * r->h->p_min * (1.0 + 1e-9); /* not stress-free */
+  if (!r->h->intergranular || r->substep < 1.0 || !pressed ||
+      !(pw_hypo_heun_pays(r->h, r->size) > 0.0) || !one_step(r, &to)) {
+    return false;
+  }
+  accept(r, to.stress, to.delta);
+  r->last = to.last;
+  record(r, 1.0, PW_HYPO_HEUN);
   return true;
 }
 
@@ -257,7 +283,9 @@ pw_status pw_hypo_integrate(const pw_hypo *h, pw_t6 de, pw_real dvol, pw_hypo_po
   if (split > 0.0) {
     advance(&r, 0.0, split);
   }
-  advance(&r, split, 1.0);
+  if (split > 0.0 || !small(&r)) {
+    advance(&r, split, 1.0);
+  }
   PW_TRY(finish(&r, dvol, p));
   if (counts) {
     counts->substeps += r.counts.substeps;
@@ -283,6 +311,12 @@ pw_status pw_hypo_repeat(const pw_hypo *h, pw_t6 de, pw_real dvol, pw_hypo_point
   bool stretch = was > 0.0 && split > 0.0;
   for (int i = 0; i < path->n; i++) {
     pw_hypo_slope k1;
+    if (path->kind[i] == PW_HYPO_HEUN) {
+      pw_hypo_heun to;
+      (void)one_step(&r, &to);
+      accept(&r, to.stress, to.delta);
+      continue;
+    }
     stage(&r, &r.stress, &r.delta, t, &k1);
     pw_real end = path->end[i];
     if (stretch && i < path->n - 1) {

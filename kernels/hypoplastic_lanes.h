@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /**
  * @file kernels/hypoplastic_lanes.h
- * @brief Rates and Runge-Kutta substeps of several points at once (layer 1).
+ * @brief Rates and substeps of several points at once (layer 1).
  *
  * Tensors of n lanes are stored as [6][n]; n, the switches and the loops are literals where these
  * functions are used, so that each use becomes straight vector code. Operations of a lane involve
@@ -10,7 +10,7 @@
 #ifndef PW_KERNELS_HYPOPLASTIC_LANES_H
 #define PW_KERNELS_HYPOPLASTIC_LANES_H
 
-#include "kernels/hypoplastic_rates.h"
+#include "kernels/hypoplastic_heun.h"
 
 /** Arrays of one evaluation. */
 typedef struct pw_hypo_stage {
@@ -31,9 +31,9 @@ PW_INLINE void pw_hypo_stage_lanes(const pw_hypo *hp, const pw_hypo_stage *stage
   const size_t ld = (size_t)n;
 #pragma omp simd
   for (int i = 0; i < n; i++) {
-    pw_hypo_slope s =
-        pw_hypo_slope_of(&h, pw_t6_load(a.stress + i, ld), pw_t6_load(a.delta + i, ld),
-                         a.void_ratio[i], pw_t6_load(a.de + i, ld), a.size[i], form);
+    pw_t6 stress = pw_t6_load(a.stress + i, ld);
+    pw_hypo_slope s = pw_hypo_slope_of(&h, stress, pw_t6_load(a.delta + i, ld), a.void_ratio[i],
+                                       pw_t6_load(a.de + i, ld), a.size[i], form);
     pw_t6_store(s.stress, a.k + i, ld);
     pw_t6_store(s.delta, a.d + i, ld);
     a.able[i] *= s.inside;
@@ -53,6 +53,27 @@ typedef struct pw_hypo_substep {
   pw_real *able;                             /**< [n] as in a stage */
   pw_real *modulus, *error;                  /**< [n] out: of the last stage; of the result */
 } pw_hypo_substep;
+
+/** @brief One step of Heun's method in @p n lanes, to at, at_delta and modulus; @p good [n] is set
+ *  to 0 where it does not stand. */
+PW_INLINE void pw_hypo_heun_lanes(const pw_hypo *hp, const pw_hypo_substep *substep, pw_real *good,
+                                  int n, int form)
+{
+  const pw_hypo h = *hp;
+  const pw_hypo_substep s = *substep;
+  const size_t ld = (size_t)n;
+#pragma omp simd
+  for (int i = 0; i < n; i++) {
+    pw_hypo_increment whole = {pw_t6_load(s.de + i, ld), s.size[i], s.void_ratio[0][i],
+                               s.void_ratio[2][i]};
+    pw_hypo_heun y = pw_hypo_heun_step(&h, pw_t6_load(s.stress + i, ld),
+                                       pw_t6_load(s.delta + i, ld), whole, form);
+    good[i] *= y.good;
+    s.modulus[i] = pw_hypo_modulus(&h, y.last);
+    pw_t6_store(y.stress, s.at + i, ld);
+    pw_t6_store(y.delta, s.at_delta + i, ld);
+  }
+}
 
 /** @brief State of the middle (@p stage 1) or of the end (2) from the rates before it. */
 PW_INLINE void pw_hypo_next_stage(const pw_hypo_substep *substep, int n, int stage)
@@ -79,7 +100,6 @@ PW_INLINE void pw_hypo_combine(const pw_hypo *hp, const pw_hypo_substep *substep
   const pw_hypo h = *hp;
   const pw_hypo_substep s = *substep;
   const size_t ld = (size_t)n;
-  const pw_real per_r = h.intergranular ? 1.0 / h.r : 0.0;
 #pragma omp simd
   for (int i = 0; i < n; i++) {
     pw_real sixth = s.step[i] * (1.0 / 6.0);
@@ -95,13 +115,11 @@ PW_INLINE void pw_hypo_combine(const pw_hypo *hp, const pw_hypo_substep *substep
     err = pw_t6_axpy(pw_t6_axpy(k1, -2.0, k2), 1.0, k3);
     sum = pw_t6_axpy(pw_t6_axpy(k1, 4.0, k2), 1.0, k3);
     pw_t6 delta = pw_t6_axpy(pw_t6_load(s.delta + i, ld), sixth, sum);
-    pw_real on_delta = pw_t6_norm(err) * per_r;
-    pw_real rho2 = pw_t6_dot(delta, delta) * h.inv_r2;
-    pw_real clip = rho2 > 1.0 ? 1.0 / sqrt(rho2) : 1.0;
+    pw_real on_delta = pw_t6_norm(err) * h.inv_r;
     s.able[i] *= pw_hypo_inside_stress(&h, stress);
     s.error[i] = sixth * (on_delta > on_stress ? on_delta : on_stress);
     pw_t6_store(stress, s.at + i, ld);
-    pw_t6_store(pw_t6_scale(clip, delta), s.at_delta + i, ld);
+    pw_t6_store(pw_hypo_clip(&h, delta), s.at_delta + i, ld);
   }
 }
 
@@ -109,14 +127,18 @@ PW_INLINE void pw_hypo_combine(const pw_hypo *hp, const pw_hypo_substep *substep
  *  whose constants begin with a pw_hypo. */
 typedef void (*pw_hypo_stage_fn)(const pw_hypo *h, const pw_hypo_stage *stage);
 
+/** Likewise of pw_hypo_heun_lanes(). */
+typedef void (*pw_hypo_heun_fn)(const pw_hypo *h, const pw_hypo_substep *s, pw_real *good);
+
 /** Lanes of the two passes over a batch. Many points need one substep: a multiple of any vector
  *  length, few enough to stay in cache. Few of them need more. */
 enum { PW_HYPO_LANES = 16, PW_HYPO_REST_LANES = 4 };
 
 /** @brief pw_hypo_advance_smooth() with the rates of a model.
- *  @param[in] rates of a stage that is not the last, and of the last; PW_HYPO_LANES lanes */
-void pw_hypo_smooth_with(const pw_hypo *h, const pw_hypo_stage_fn rates[2], bool plane,
-                         const pw_stress_args *a, pw_real *done);
+ *  @param[in] rates of a stage that is not the last, and of the last; PW_HYPO_LANES lanes
+ *  @param[in] heun  likewise; NULL where it is not tried */
+void pw_hypo_smooth_with(const pw_hypo *h, const pw_hypo_stage_fn rates[2], pw_hypo_heun_fn heun,
+                         bool plane, const pw_stress_args *a, pw_real *done);
 
 /** @brief pw_hypo_advance_rest() likewise; PW_HYPO_REST_LANES lanes. */
 void pw_hypo_rest_with(const pw_hypo *h, const pw_hypo_stage_fn rates[2], bool plane,

@@ -4,16 +4,12 @@
  * @brief The right-hand side of the hypoplastic model as one branch-free function (layer 1).
  *
  * Shared by the integration of one point and by that of a chunk of points, so that both give the
- * same bits. Powers go through one logarithm per base; with B = exp(-x), x = (3p/h_s)^n, the void
- * ratio enters only as e/B, and e_i, e_c, e_d only as their values at zero pressure.
+ * same bits.
  */
 #ifndef PW_KERNELS_HYPOPLASTIC_RATES_H
 #define PW_KERNELS_HYPOPLASTIC_RATES_H
 
-#include "kernels/hypoplastic.h"
-
-/** Least ratio (e - e_d)/(e_c - e_d) for which f_d is a power; below, it falls linearly to 0. */
-#define PW_HYPO_R_MIN 1e-3
+#include "kernels/hypoplastic_powers.h"
 
 /** Smallest substep, as a fraction of the increment. */
 #define PW_HYPO_SUBSTEP_MIN 1e-5
@@ -26,6 +22,7 @@ typedef struct pw_hypo_shape {
   pw_t6 s;
   pw_real trace;  /**< of sigma*; negative in compression; Pa */
   pw_real np, j3; /**< s':s' and det s' */
+  pw_real inv_ss; /**< 1 / s:s */
   pw_real f;      /**< F of Matsuoka-Nakai */
 } pw_hypo_shape;
 
@@ -51,8 +48,10 @@ PW_INLINE pw_hypo_shape pw_hypo_shape_of(pw_t6 shifted)
   g.np = pw_t6_dot(dev, dev);
   g.j3 = pw_t6_det(dev);
   /* sqrt2 tan psi cos 3theta = -18 det s' / |s'|^2; it vanishes with s' */
-  pw_real t2 = 3.0 * g.np, guarded = g.np + 1e-60;
-  pw_real root = 0.125 * t2 + (2.0 - t2) * guarded / (2.0 * guarded - 18.0 * g.j3);
+  pw_real t2 = 3.0 * g.np, guarded = g.np + 1e-60, ss = g.np + 1.0 / 3.0;
+  pw_real under = 2.0 * guarded - 18.0 * g.j3, inv = 1.0 / (under * ss); /* two inverses in one */
+  pw_real root = 0.125 * t2 + (2.0 - t2) * guarded * (inv * ss);
+  g.inv_ss = inv * under;
   g.f = sqrt(root > 0.0 ? root : 0.0) - sqrt(t2) * 0.35355339059327376220; /* 1/(2 sqrt2) */
   return g;
 }
@@ -80,80 +79,78 @@ PW_INLINE pw_real pw_hypo_inside_stress(const pw_hypo *h, pw_t6 shifted)
   return i2 > 0.0 ? pressure * ratio : 0.0;
 }
 
-PW_INLINE pw_hypo_factors pw_hypo_factors_of(const pw_hypo *h, const pw_hypo_shape *g,
-                                             pw_real void_ratio, bool unit)
+/** @brief Scalar factors from the shape of the stress and the powers. */
+PW_INLINE pw_hypo_factors pw_hypo_factors_from(const pw_hypo *h, const pw_hypo_shape *g,
+                                               const pw_hypo_powers *p)
 {
-  pw_real q = -g->trace * h->inv_h_s;
-  q = q > 1e-30 ? q : 1e-30;
-  pw_real log_q = pw_log(q);
-  pw_real inv_b = pw_exp(pw_exp(h->n * log_q));
-  pw_real e0 = void_ratio * inv_b; /* what e would be at zero pressure on Bauer's curves */
-  pw_real loose = 2.0 * (e0 * h->inv_e_i0 - 1.0);
+  pw_real loose = 2.0 * (p->e0 * h->inv_e_i0 - 1.0);
+  pw_real fbe = h->k_b * (1.0 + p->inv_b * h->inv_e_i0) * p->stiff; /* f_b f_e */
+  pw_real common = fbe * g->inv_ss;
   pw_hypo_factors k;
   k.fade = loose <= 0.0 ? 1.0 : (loose < 1.0 ? 1.0 - loose : 0.0);
-  e0 = e0 > h->e_i0 ? h->e_i0 : e0;
-  pw_real e0_e = e0 < 0.9 * h->e_d0 ? 0.9 * h->e_d0 : e0;
-  /* f_b f_e, with (3p/h_s)^(1-n) and (e_c/e)^beta as one power */
-  pw_real power = unit ? pw_exp((1.0 - h->n) * log_q) * h->e_c0 / e0_e
-                       : pw_exp((1.0 - h->n) * log_q + h->beta * (h->log_e_c0 - pw_log(e0_e)));
-  pw_real fbe = h->k_b * (1.0 + inv_b * h->inv_e_i0) * power;
-  pw_real r = (e0 - h->e_d0) * h->inv_e_range;
-  pw_real r_power = r > PW_HYPO_R_MIN ? r : PW_HYPO_R_MIN;
-  pw_real r_line = r < PW_HYPO_R_MIN ? (r > 0.0 ? r * (1.0 / PW_HYPO_R_MIN) : 0.0) : 1.0;
-  pw_real f_d = pw_exp(h->alpha * pw_log(r_power)) * r_line;
-  pw_real common = fbe / (g->np + 1.0 / 3.0);
   k.c1 = common * g->f * g->f;
   k.c2 = common * h->a2;
-  k.c_n = common * f_d * h->a * g->f;
+  k.c_n = common * (p->r_alpha * p->r_line) * h->a * g->f;
   return k;
 }
 
+PW_INLINE pw_hypo_factors pw_hypo_factors_of(const pw_hypo *h, const pw_hypo_shape *g,
+                                             pw_real void_ratio, bool unit)
+{
+  pw_hypo_powers p =
+      pw_hypo_powers_of(h, g->trace, void_ratio, (pw_t6){0}, unit ? PW_HYPO_UNIT : 0);
+  return pw_hypo_factors_from(h, g, &p);
+}
+
 /**
- * @brief Rates of stress and intergranular strain.
- * @param[in] shifted        sigma*; Pa
+ * @brief Rates of stress and intergranular strain from the shape of the stress and the powers.
  * @param[in] delta          intergranular strain; unused without it
- * @param[in] d,d_norm       strain rate and its Frobenius norm
+ * @param[in] d              strain rate; d_norm: its Frobenius norm
  * @param[in] form           h->form, as a literal where the compiler can use it
  */
-PW_INLINE pw_hypo_slope pw_hypo_slope_of(const pw_hypo *h, pw_t6 shifted, pw_t6 delta,
-                                         pw_real void_ratio, pw_t6 d, pw_real d_norm, int form)
+PW_INLINE pw_hypo_slope pw_hypo_slope_from(const pw_hypo *h, const pw_hypo_shape *g,
+                                           const pw_hypo_powers *p, pw_t6 delta, pw_t6 d,
+                                           pw_real d_norm, int form)
 {
-  pw_hypo_shape g = pw_hypo_shape_of(shifted);
-  pw_hypo_factors k = pw_hypo_factors_of(h, &g, void_ratio, form & PW_HYPO_UNIT);
+  pw_hypo_factors k = pw_hypo_factors_from(h, g, p);
   pw_hypo_slope out;
   pw_real along_d = 1.0, along_dir = 0.0, n_part = d_norm; /* of L:D, L:d and N */
   pw_t6 dir = {0};
   pw_real s_dir = 0.0;
   out.delta = d;
   if (form & PW_HYPO_WITH) {
-    pw_real dd = pw_t6_dot(delta, delta);
-    dd = dd > 1e-200 ? dd : 1e-200;
-    pw_real log_rho = 0.5 * pw_log(dd * h->inv_r2);
-    pw_real rho_chi = form & PW_HYPO_UNIT ? sqrt(dd * h->inv_r2) : pw_exp(h->chi * log_rho);
-    pw_real rho_beta = pw_exp(h->beta_r * log_rho);
-    dir = pw_t6_scale(1.0 / sqrt(dd), delta);
+    dir = pw_t6_scale(p->inv_norm, delta);
     pw_real turn = pw_t6_dot(dir, d); /* d:D */
     pw_real loading = turn > 0.0 ? turn : 0.0;
-    along_d = h->m_r + rho_chi * (h->m_t - h->m_r);
-    along_dir = rho_chi * (turn > 0.0 ? 1.0 - h->m_t : h->m_r - h->m_t) * turn;
-    n_part = rho_chi * loading;
-    s_dir = pw_t6_dot(g.s, dir);
-    out.delta = pw_t6_axpy(d, -rho_beta * loading, dir);
+    along_d = h->m_r + p->rho_chi * (h->m_t - h->m_r);
+    along_dir = p->rho_chi * (turn > 0.0 ? 1.0 - h->m_t : h->m_r - h->m_t) * turn;
+    n_part = p->rho_chi * loading;
+    s_dir = pw_t6_dot(g->s, dir);
+    out.delta = pw_t6_axpy(d, -p->rho_beta * loading, dir);
   }
-  pw_real s_d = pw_t6_dot(g.s, d);
+  pw_real s_d = pw_t6_dot(g->s, d);
   pw_real n_coef = k.c_n * n_part; /* N = c_n (2 s - 1/3) */
   pw_real on_s = k.c2 * (along_d * s_d + along_dir * s_dir) + 2.0 * n_coef;
   pw_t6 x = pw_t6_scale(k.c1 * along_d, d);
   x = pw_t6_axpy(x, k.c1 * along_dir, dir);
-  x = pw_t6_shift(pw_t6_axpy(x, on_s, g.s), -n_coef * (1.0 / 3.0));
+  x = pw_t6_shift(pw_t6_axpy(x, on_s, g->s), -n_coef * (1.0 / 3.0));
   out.stress = pw_t6_scale(k.fade, x);
-  out.inside = pw_hypo_inside_shape(h, &g);
+  out.inside = pw_hypo_inside_shape(h, g);
   out.c1 = k.c1;
   out.c2 = k.c2;
   out.c_n = k.c_n;
-  out.np = g.np;
-  out.j3 = g.j3;
+  out.np = g->np;
+  out.j3 = g->j3;
   return out;
+}
+
+/** @brief The same at a state. @param[in] shifted sigma*; Pa */
+PW_INLINE pw_hypo_slope pw_hypo_slope_of(const pw_hypo *h, pw_t6 shifted, pw_t6 delta,
+                                         pw_real void_ratio, pw_t6 d, pw_real d_norm, int form)
+{
+  pw_hypo_shape g = pw_hypo_shape_of(shifted);
+  pw_hypo_powers p = pw_hypo_powers_of(h, g.trace, void_ratio, delta, form);
+  return pw_hypo_slope_from(h, &g, &p, delta, d, d_norm, form);
 }
 
 /**
@@ -168,6 +165,13 @@ PW_INLINE pw_real pw_hypo_modulus(const pw_hypo *h, pw_hypo_slope k)
   pw_real s_max = 1.0 / 3.0 + pw_t6_largest_bound(0.5 * k.np, k.j3);
   pw_real linear = k.c1 + k.c2 * s_max * s_max;
   return h->speed_linear * linear + h->speed_n * k.c_n * (2.0 * s_max - 1.0 / 3.0);
+}
+
+/** @brief |delta| never exceeds R; only rounding and the truncation of a step would make it. */
+PW_INLINE pw_t6 pw_hypo_clip(const pw_hypo *h, pw_t6 delta)
+{
+  pw_real rho2 = pw_t6_dot(delta, delta) * h->inv_r2;
+  return pw_t6_scale(rho2 > 1.0 ? 1.0 / sqrt(rho2) : 1.0, delta);
 }
 
 /** @brief Substep to try after one of size @p step with the error @p err, of order 3. */
