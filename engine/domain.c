@@ -2,6 +2,7 @@
 #include "engine/domain.h"
 
 #include <math.h>
+#include <string.h>
 
 #include "engine/domain_sites.h"
 
@@ -120,19 +121,6 @@ static bool reshape(pw_sim *sim, pw_idx i, pw_real area, pw_real r[4])
   return true;
 }
 
-/* What the half-sides have changed beyond their deformation, r - (I + grad du) r_before. */
-static void note_jump(pw_points *p, pw_idx i, const pw_real *du, const pw_real r[4])
-{
-  const pw_idx ld = p->ld;
-  for (int k = 0; k < 2; k++) {
-    pw_real x = p->half[2 * k * ld + i], y = p->half[(2 * k + 1) * ld + i];
-    p->contact_jump[2 * k * ld + i] = r[2 * k] - (x + du[0] * x + du[PW_CHUNK] * y);
-    p->contact_jump[(2 * k + 1) * ld + i] =
-        r[2 * k + 1] - (y + du[2 * PW_CHUNK] * x + du[3 * PW_CHUNK] * y);
-  }
-  p->contact_jump[4 * ld + i] = p->contact_jump[5 * ld + i] = 0.0;
-}
-
 /*
  * A domain that is held by the master and changes its shape keeps its place at the master: the
  * centre takes back the mean jump of the sites that are held. A domain that grew into the master
@@ -159,64 +147,138 @@ static void hold_place(pw_points *p, pw_idx i, bool axi)
   }
 }
 
-/* Whether a domain is, beyond round-off, within all limits: most are, and need no divisions.
- * @param spread aspect + 1 / aspect of the most slender domain; 0: no such limit */
-static bool is_compact(const pw_sim *sim, pw_idx i, const pw_real r[4], pw_real spread)
+/* Domains of a chunk on their way. */
+typedef struct domains {
+  pw_real r[4][PW_CHUNK], inv[2][PW_CHUNK]; /* half-sides, m; 1 / cell where the point is, 1/m */
+  pw_real limit[PW_CHUNK];                  /* of half diagonals, in cells */
+  pw_real loose[PW_CHUNK];                  /* 1 where a limit may be exceeded */
+} domains;
+
+/* Half-sides that follow the deformation, and what their limits are measured with. */
+static void follow(const pw_sim *sim, pw_idx first, pw_idx n, domains *d)
 {
   const pw_points *p = &sim->points;
-  const pw_real limit = sim->limit[p->id[i]], within = 1.0 - 1e-9;
-  pw_real inv[2] = {1.0, 1.0};
-  for (int a = 0; sim->mesh.graded && a < 2; a++) {
-    const pw_grid_axis *axis = &sim->mesh.axis[a];
-    inv[a] = axis->inv[pw_grid_axis_cell(axis, pw_grid_axis_clamp(axis, p->x[a * p->ld + i]))];
+  const pw_idx ld = p->ld, *id = p->id + first;
+  const pw_real *f = p->def_grad + first, *r0 = p->half0 + first, *limit = sim->limit;
+  for (int k = 0; k < 4; k += 2) {
+    const pw_real *x0 = r0 + k * ld, *y0 = x0 + ld;
+#pragma omp simd
+    for (pw_idx i = 0; i < n; i++) {
+      d->r[k][i] = f[i] * x0[i] + f[ld + i] * y0[i];
+      d->r[k + 1][i] = f[2 * ld + i] * x0[i] + f[3 * ld + i] * y0[i];
+    }
   }
-  const pw_real s[4] = {r[0] * inv[0], r[1] * inv[1], r[2] * inv[0], r[3] * inv[1]};
-  const pw_real xx = s[0] * s[0] + s[2] * s[2], yy = s[1] * s[1] + s[3] * s[3];
-  const pw_real across = 2.0 * (s[0] * s[2] + s[1] * s[3]), square = xx + yy;
-  const pw_real det = s[0] * s[3] - s[1] * s[2];
-  const bool round = spread <= 0.0 || square <= det * spread * within;
-  return round && square + fabs(across) <= limit * limit * within; /* the longer diagonal */
+  for (pw_idx i = 0; i < n; i++) {
+    d->limit[i] = limit[id[i]];
+  }
+  for (int a = 0; a < 2; a++) {
+    const pw_grid_axis axis = sim->mesh.axis[a];
+    const pw_real *x = p->x + a * ld + first;
+    for (pw_idx i = 0; i < n; i++) {
+      d->inv[a][i] = sim->mesh.graded
+                         ? axis.inv[pw_grid_axis_cell(&axis, pw_grid_axis_clamp(&axis, x[i]))]
+                         : 1.0;
+    }
+  }
+}
+
+/* Find the domains that are not, beyond round-off, within all limits: most are, and need no
+ * divisions. How many.
+ * @param spread aspect + 1 / aspect of the most slender domain; 0: no such limit */
+static pw_real find_loose(pw_idx n, pw_real spread, domains *d)
+{
+  const pw_real within = 1.0 - 1e-9, any = spread > 0.0 ? 0.0 : 1.0;
+  pw_real count = 0.0;
+#pragma omp simd reduction(+ : count)
+  for (pw_idx i = 0; i < n; i++) {
+    const pw_real inv0 = d->inv[0][i], inv1 = d->inv[1][i], limit = d->limit[i];
+    const pw_real s0 = d->r[0][i] * inv0, s1 = d->r[1][i] * inv1;
+    const pw_real s2 = d->r[2][i] * inv0, s3 = d->r[3][i] * inv1;
+    const pw_real xx = s0 * s0 + s2 * s2, yy = s1 * s1 + s3 * s3;
+    const pw_real across = 2.0 * (s0 * s2 + s1 * s3), square = xx + yy, det = s0 * s3 - s1 * s2;
+    const pw_real round = square <= det * spread * within ? 1.0 : any;
+    /* the longer diagonal */
+    const pw_real close = square + fabs(across) <= limit * limit * within ? round : 0.0;
+    d->loose[i] = 1.0 - close;
+    count += d->loose[i];
+  }
+  return count;
+}
+
+/* Put domain i, the k-th of its chunk, within its limits; it stays loose only if it was changed. */
+static void tighten(pw_sim *sim, pw_idx i, pw_idx k, domains *d, pw_block_sums *sums)
+{
+  pw_points *p = &sim->points;
+  const pw_real area = sim->scene.geometry == PW_AXI ? p->vol[i] / p->x[i] : p->vol[i];
+  pw_real r[4] = {d->r[0][k], d->r[1][k], d->r[2][k], d->r[3][k]}, limit;
+  bool changed = sim->scene.method.domain_aspect_max > 0.0 && reshape(sim, i, area, r);
+  sums->reshaped += changed ? 1 : 0;
+  if (limit_domain(sim, i, r, &limit)) {
+    changed = true;
+    sums->limited++;
+    if (4.0 * (r[0] * r[3] - r[1] * r[2]) < PW_DOMAIN_DEGENERATE * area) {
+      rebuild(p, i, area, limit, r);
+      sums->rebuilt++;
+    }
+  }
+  d->loose[k] = changed ? 1.0 : 0.0;
+  for (int c = 0; c < 4; c++) {
+    d->r[c][k] = r[c];
+  }
+}
+
+/* What the half-sides have changed beyond their deformation, r - (I + grad du) r_before. */
+static void note_jumps(pw_points *p, pw_idx first, pw_idx n, const pw_gradients *grad,
+                       const domains *d)
+{
+  const pw_idx ld = p->ld;
+  for (int k = 0; k < 4; k += 2) {
+    const pw_real *half = p->half + k * ld + first;
+    pw_real *jump = p->contact_jump + k * ld + first;
+#pragma omp simd
+    for (pw_idx i = 0; i < n; i++) {
+      const pw_real x = half[i], y = half[ld + i];
+      jump[i] = d->r[k][i] - (x + grad->du[0][i] * x + grad->du[1][i] * y);
+      jump[ld + i] = d->r[k + 1][i] - (y + grad->du[2][i] * x + grad->du[3][i] * y);
+    }
+  }
+  memset(p->contact_jump + 4 * ld + first, 0, (size_t)n * sizeof *p->contact_jump);
+  memset(p->contact_jump + 5 * ld + first, 0, (size_t)n * sizeof *p->contact_jump);
+}
+
+static void convect(pw_sim *sim, const pw_gradients *grad, pw_idx first, pw_idx n,
+                    pw_block_sums *sums)
+{
+  pw_points *p = &sim->points;
+  const pw_idx ld = p->ld;
+  const pw_real aspect = sim->scene.method.domain_aspect_max;
+  domains d;
+  follow(sim, first, n, &d);
+  const bool any = find_loose(n, aspect > 0.0 ? aspect + 1.0 / aspect : 0.0, &d) > 0.0;
+  for (pw_idx k = 0; any && k < n; k++) {
+    if (d.loose[k] > 0.0) {
+      tighten(sim, first + k, k, &d, sums);
+    }
+  }
+  if (p->contact_jump) {
+    note_jumps(p, first, n, grad, &d);
+    for (pw_idx k = 0; any && k < n; k++) {
+      if (d.loose[k] > 0.0) {
+        hold_place(p, first + k, sim->scene.geometry == PW_AXI);
+      }
+    }
+  }
+  for (int c = 0; c < 4; c++) {
+    memcpy(p->half + c * ld + first, d.r[c], (size_t)n * sizeof *p->half);
+  }
 }
 
 void pw_domain_convect(pw_sim *sim, const pw_gradients *grad, pw_idx first, pw_idx n,
                        pw_block_sums *sums)
 {
-  pw_points *p = &sim->points;
-  const pw_idx ld = p->ld;
-  const bool axi = sim->scene.geometry == PW_AXI;
-  const pw_real aspect = sim->scene.method.domain_aspect_max;
-  const pw_real spread = aspect > 0.0 ? aspect + 1.0 / aspect : 0.0;
-  for (pw_idx i = first; i < first + n; i++) {
-    const pw_real *f = p->def_grad + i, *r0 = p->half0 + i;
-    pw_real r[4];
-    for (int k = 0; k < 2; k++) {
-      pw_real x = r0[2 * k * ld], y = r0[(2 * k + 1) * ld];
-      r[2 * k] = f[0] * x + f[ld] * y;
-      r[2 * k + 1] = f[2 * ld] * x + f[3 * ld] * y;
-    }
-    pw_real limit;
-    const bool compact = is_compact(sim, i, r, spread);
-    bool changed =
-        !compact && aspect > 0.0 && reshape(sim, i, axi ? p->vol[i] / p->x[i] : p->vol[i], r);
-    sums->reshaped += changed ? 1 : 0;
-    if (!compact && limit_domain(sim, i, r, &limit)) {
-      changed = true;
-      sums->limited++;
-      pw_real area = axi ? p->vol[i] / p->x[i] : p->vol[i];
-      if (4.0 * (r[0] * r[3] - r[1] * r[2]) < PW_DOMAIN_DEGENERATE * area) {
-        rebuild(p, i, area, limit, r);
-        sums->rebuilt++;
-      }
-    }
-    if (p->contact_jump) {
-      note_jump(p, i, &grad->du[0][i - first], r);
-      if (changed) {
-        hold_place(p, i, axi);
-      }
-    }
-    for (int k = 0; k < 4; k++) {
-      p->half[k * ld + i] = r[k];
-    }
+  const pw_idx last = first + n;
+  for (; first < last; first += PW_CHUNK) { /* one chunk where there are gradients */
+    convect(sim, grad, first, last - first < PW_CHUNK ? last - first : PW_CHUNK, sums);
   }
 }
 

@@ -20,11 +20,15 @@ void pw_fbar_clear(pw_sim *sim)
   }
 }
 
-/* Cell of a point; -1: outside, or one whose points take other steps. */
-static pw_idx cell_of(const pw_sim *sim, pw_idx block, const pw_real *x)
+/* Cells of points [first, first + n); -1: outside, or one whose points take other steps. */
+static void find_cells(const pw_sim *sim, pw_idx block, pw_idx first, pw_idx n)
 {
-  const pw_idx e = pw_mesh_locate(&sim->mesh, x);
-  return e >= 0 && pw_rates_share(sim, block, e) ? e : -1;
+  const pw_points *p = &sim->points;
+  pw_idx *e = sim->fbar->element + first;
+  pw_mesh_locate_points(&sim->mesh, p->x + first, p->ld, n, e);
+  for (pw_idx i = 0; sim->rates && i < n; i++) {
+    e[i] = e[i] >= 0 && pw_rates_share(sim, block, e[i]) ? e[i] : -1;
+  }
 }
 
 /* The part of the stress that works on a change of volume, where F-bar scales the components. */
@@ -43,9 +47,11 @@ void pw_block_fbar_sum(void *ctx, pw_idx block)
   for (int b = 0; b < sim->nbody; b++) {
     const pw_idx *range = sim->blocks.point_start + (pw_off)block * sim->nbody + b;
     pw_real *sum = cell_sums(sim, b);
+    if (c->body[b]) {
+      find_cells(sim, block, range[0], range[1] - range[0]);
+    }
     for (pw_idx i = range[0]; c->body[b] && i < range[1]; i++) {
-      pw_real x[2] = {p->x[i], p->x[p->ld + i]};
-      const pw_idx e = c->element[i] = cell_of(sim, block, x);
+      const pw_idx e = c->element[i];
       if (e >= 0) {
         sum[2 * (pw_off)e] += p->vol[i];
         sum[2 * (pw_off)e + 1] += p->vol[i] * mean_stress(sim, i);
@@ -87,10 +93,7 @@ static void gather_range(const pw_update_pass *pass, pw_idx block, int b, pw_idx
   const pw_points *p = &sim->points;
   pw_real *sum = cell_sums(sim, b);
   pw_gradients grad;
-  for (pw_idx i = first; i < first + n; i++) {
-    pw_real x[2] = {p->x[i], p->x[p->ld + i]};
-    c->element[i] = cell_of(sim, block, x);
-  }
+  find_cells(sim, block, first, n);
   sim->kernels->g2p_gradient(&sim->transfer, pw_nodes_field(&sim->nodes, sim->body[b].field),
                              pass->slot, pw_rates_dt(sim, block), pass->move, first, first + n,
                              &grad);

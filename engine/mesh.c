@@ -151,6 +151,47 @@ pw_idx pw_mesh_locate(const pw_mesh *m, const pw_real *x)
   return k[1] * m->cells[0] + k[0];
 }
 
+/* Bins of at most PW_CHUNK coordinates of a graded axis, then the cells at those; -1 outside. */
+static void locate_along(const pw_grid_axis *a, const pw_real *restrict x, pw_idx n,
+                         pw_idx *restrict cell)
+{
+  const pw_real lower = a->node[0], upper = a->node[a->cells], inv_bin = a->inv_bin;
+  const pw_grid_bin *restrict bin = a->bin;
+  const pw_idx last = a->nbin - 1;
+#pragma omp simd
+  for (pw_idx i = 0; i < n; i++) {
+    pw_real k = x[i] > lower ? x[i] : lower; /* NaN too */
+    pw_idx b = (pw_idx)(((k < upper ? k : upper) - lower) * inv_bin);
+    cell[i] = b < last ? b : last;
+  }
+  for (pw_idx i = 0; i < n; i++) {
+    const pw_grid_bin *b = &bin[cell[i]];
+    cell[i] = b->cell + (x[i] >= b->split);
+  }
+#pragma omp simd
+  for (pw_idx i = 0; i < n; i++) {
+    cell[i] = (x[i] >= lower) & (x[i] <= upper) ? cell[i] : -1;
+  }
+}
+
+void pw_mesh_locate_points(const pw_mesh *m, const pw_real *x, pw_idx ld, pw_idx n, pw_idx *element)
+{
+  pw_idx kx[PW_CHUNK], ky[PW_CHUNK];
+  for (pw_idx i = 0; !m->graded && i < n; i++) {
+    const pw_real at[2] = {x[i], x[ld + i]};
+    element[i] = pw_mesh_locate(m, at);
+  }
+  for (pw_idx first = 0; m->graded && first < n; first += PW_CHUNK) {
+    const pw_idx count = n - first < PW_CHUNK ? n - first : PW_CHUNK;
+    locate_along(&m->axis[0], x + first, count, kx);
+    locate_along(&m->axis[1], x + ld + first, count, ky);
+#pragma omp simd
+    for (pw_idx i = 0; i < count; i++) {
+      element[first + i] = (kx[i] >= 0) & (ky[i] >= 0) ? ky[i] * m->cells[0] + kx[i] : -1;
+    }
+  }
+}
+
 /* Cell and place in it, 0..1, along an axis; a coordinate outside is moved to the edge. */
 static pw_idx place(const pw_mesh *m, int d, pw_real x, pw_real *local)
 {

@@ -52,6 +52,10 @@ void pw_mesh_destroy(pw_mesh *m);
  *  on the grid's far edges: the last one. */
 pw_idx pw_mesh_locate(const pw_mesh *m, const pw_real *x);
 
+/** @brief The same for @p n points. @param[in] x [2][ld] m @param[out] element [n] */
+void pw_mesh_locate_points(const pw_mesh *m, const pw_real *x, pw_idx ld, pw_idx n,
+                           pw_idx *element);
+
 static inline pw_real pw_mesh_node_x(const pw_mesh *m, pw_idx node)
 {
   pw_idx i = node % m->nodes[0];
