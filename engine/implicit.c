@@ -237,7 +237,7 @@ static pw_status move(void *ctx, pw_tet_model *m, pw_real t1)
 }
 
 /* The first pieces that nothing holds are told of. */
-static void note_mechanisms(pw_implicit *sim)
+static void note_mechanisms(pw_implicit *sim, pw_off step)
 {
   const pw_mechanism_report *r = &sim->report.mechanisms;
   if (r->free == 0 || sim->warning[0]) {
@@ -248,13 +248,19 @@ static void note_mechanisms(pw_implicit *sim)
       sim->warning, sizeof sim->warning,
       "step %lld: %d of %d pieces of the body, %d elements, are held by nothing, the first one "
       "with element %d (nodes %d %d %d %d) has %d free motions",
-      (long long)sim->step, r->free, r->pieces, r->elements, r->first, node[0], node[1], node[2],
+      (long long)step, r->free, r->pieces, r->elements, r->first, node[0], node[1], node[2],
       node[3], r->motions);
 }
 
 const char *pw_implicit_warning(const pw_implicit *sim, int i)
 {
-  return i == 0 && sim->warning[0] ? sim->warning : NULL;
+  const char *const known[] = {sim->note, sim->warning};
+  for (size_t k = 0; k < sizeof known / sizeof *known; k++) {
+    if (known[k][0] && i-- == 0) {
+      return known[k];
+    }
+  }
+  return NULL;
 }
 
 /* Length of the next step in load steps: one, or as the iterations before suggest, and what is left
@@ -304,7 +310,7 @@ pw_status pw_implicit_advance(pw_implicit *sim, pw_real limit_s)
     sim->now = time_at(sim, 1.0);
     choose_next(sim);
   }
-  note_mechanisms(sim);
+  note_mechanisms(sim, sim->step + (s != PW_OK));
   sim->wall += omp_get_wtime() - start;
   return s;
 }

@@ -61,6 +61,7 @@ struct pw_implicit {
   pw_off equations; /**< of the last part */
   pw_real wall;
   char warning[256]; /**< about free mechanisms, or "" */
+  char note[256];    /**< about a body that will leave the nodes that move it, or "" */
   bool mesh_moves;   /**< an effect moves the mesh */
   bool has_axis;     /**< a driven boundary turns about it */
   pw_real axis[3], centre[3];

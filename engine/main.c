@@ -17,6 +17,16 @@ static pw_exit usage(const char *command, const char *what, const char *word)
   return PW_EXIT_USAGE;
 }
 
+const char *pw_main_unknown(char *const *argv)
+{
+  static char letter[] = "-?";
+  if (optopt < ' ' || optopt == 'h') { /* a long option; -h is known */
+    return argv[optind - 1];
+  }
+  letter[1] = (char)optopt;
+  return letter;
+}
+
 static bool read_threads(const char *text, int *threads)
 {
   char *end = NULL;
@@ -48,13 +58,13 @@ static pw_exit read_options(int argc, char **argv, pw_run_options *o, const char
 {
   const char *command = argv[0];
   bool runs = strcmp(command, "run") == 0;
-  int option;
+  int option, place = 0;
 
   opterr = 0;
   o->set = set;
-  while ((option = getopt_long(argc, argv, ":h", all_options, NULL)) != -1) {
+  while ((option = getopt_long(argc, argv, ":h", all_options, &place)) != -1) {
     if (!runs && option != OPTION_SET && option != OPTION_THREADS && option != 'h' && option < 32) {
-      return usage(command, "not an option of this command: ", argv[optind - 1]);
+      return usage(command, "not an option of this command: --", all_options[place].name);
     }
     switch (option) {
     case OPTION_OUT:
@@ -83,7 +93,7 @@ static pw_exit read_options(int argc, char **argv, pw_run_options *o, const char
     case ':':
       return usage(command, "a value is missing after ", argv[optind - 1]);
     default:
-      return usage(command, "unknown option ", argv[optind - 1]);
+      return usage(command, "unknown option ", pw_main_unknown(argv));
     }
   }
   if (optind + 1 != argc) {
@@ -123,11 +133,18 @@ static pw_exit check(const pw_run_options *o)
   }
   if (status == PW_OK) {
     job.kind = pw_job_kind_of(scene);
+    const char *geometry = pw_solid_mesh_geometry(scene);
+    if (geometry) {
+      fprintf(stderr, "meshing %s ...\n", geometry);
+    }
     status = job.kind->create(scene, o->threads, &job.sim);
   }
   if (status == PW_OK) {
+    status = job.kind->check(job.sim, stdout);
+    fflush(stdout);
+  }
+  if (status == PW_OK) {
     printf("%s can be run\n", o->scene_file);
-    job.kind->check(job.sim, stdout);
   } else {
     print_errors(o, status, messages);
   }

@@ -21,6 +21,10 @@
  */
 bool pw_main_bind_threads(char **argv, int threads);
 
+/** @brief The word that getopt_long() has just called unknown: a long option as it stands, or the
+ *  letter with its dash. Overwritten by the next call. */
+const char *pw_main_unknown(char *const *argv);
+
 /** @brief The command `element`. @return its exit status. */
 int pw_main_element(int argc, char **argv);
 

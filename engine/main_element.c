@@ -43,7 +43,7 @@ static pw_exit element(int argc, char **argv, const char **set)
     case ':':
       return usage("a value is missing after ", argv[optind - 1]);
     default:
-      return usage("unknown option ", argv[optind - 1]);
+      return usage("unknown option ", pw_main_unknown(argv));
     }
   }
   if (optind + 1 != argc) {

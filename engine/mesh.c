@@ -170,7 +170,7 @@ static void locate_along(const pw_grid_axis *a, const pw_real *restrict x, pw_id
   }
 #pragma omp simd
   for (pw_idx i = 0; i < n; i++) {
-    cell[i] = (x[i] >= lower) & (x[i] <= upper) ? cell[i] : -1;
+    cell[i] = ((x[i] >= lower) & (x[i] <= upper)) ? cell[i] : -1;
   }
 }
 
@@ -187,7 +187,7 @@ void pw_mesh_locate_points(const pw_mesh *m, const pw_real *x, pw_idx ld, pw_idx
     locate_along(&m->axis[1], x + ld + first, count, ky);
 #pragma omp simd
     for (pw_idx i = 0; i < count; i++) {
-      element[first + i] = (kx[i] >= 0) & (ky[i] >= 0) ? ky[i] * m->cells[0] + kx[i] : -1;
+      element[first + i] = ((kx[i] >= 0) & (ky[i] >= 0)) ? ky[i] * m->cells[0] + kx[i] : -1;
     }
   }
 }

@@ -9,6 +9,7 @@ static const pw_real on_the_way = 1e-3;  /* residual of a solution that only lea
 static const pw_real sufficient = 0.999; /* part of the residual a searched correction may leave */
 static const pw_real loosest = 1e-3;     /* part that an iterative solve may leave, at most */
 static const pw_real tightest = 1e-12;   /* and at least */
+static const pw_real negligible = 1e-9;  /* part of the load that may act on nothing */
 
 static bool dynamic(const pw_newton *n)
 {
@@ -148,6 +149,24 @@ static void set_loads(pw_newton *n, const pw_newton_load *load, pw_real t0, pw_r
   }
 }
 
+/* Loads of nodes without points would act on nothing, in a step that converges all the same. */
+static pw_status check_loads(const pw_newton *n)
+{
+  const pw_newton_system *m = &n->system;
+  pw_real lost = 0.0, all = 0.0;
+  for (size_t i = 0; i < n->dofs && n->model; i++) {
+    const pw_real force = fabs(m->external[i]);
+    all += force;
+    lost += m->equation[i] < 0 && !m->fixed[i] ? force : 0.0;
+  }
+  PW_REQUIRE(lost <= negligible * all, PW_ERR_SCENE,
+             "%.4g of %.4g N of load act on nodes without points: the body has left the surface of "
+             "the mesh that is loaded; follower: true takes a pressure along with the body, "
+             "moving_mesh the mesh",
+             lost, all);
+  return PW_OK;
+}
+
 /* Dynamics: nodes go on as they move. */
 static pw_status start_moving(pw_newton *n, const pw_newton_load *load, const pw_real *t)
 {
@@ -160,6 +179,7 @@ static pw_status start_moving(pw_newton *n, const pw_newton_load *load, const pw
     pw_tet_rates_balance(m, &n->rates);
   }
   set_loads(n, load, t[0], t[1]);
+  PW_TRY(check_loads(n));
   for (size_t i = 0; i < n->dofs; i++) {
     const pw_real far = dt * (n->rates.v0[i] + 0.5 * dt * n->rates.a0[i]);
     n->u[i] = m->equation[i] >= 0 ? far : 0.0;
@@ -183,6 +203,7 @@ static pw_status start_part(pw_newton *n, const pw_newton_load *load, const pw_r
     return start_moving(n, load, t);
   }
   set_loads(n, load, t[0], t[1]);
+  PW_TRY(check_loads(n));
   if (!whole || !guess) {
     PW_TRY(evaluate(n, !guess));
   }

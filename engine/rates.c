@@ -335,6 +335,13 @@ pw_status pw_rates_archive(pw_sim *sim, pw_archive *ar)
   if (!sim->rates) {
     return PW_OK;
   }
-  PW_TRY(ar->index(ar, "rates/first", &sim->rates->first, 1));
-  return ar->index(ar, "rates/level", sim->rates->level, sim->blocks.nblock);
+  pw_rates *r = sim->rates;
+  PW_TRY(ar->index(ar, "rates/first", &r->first, 1));
+  PW_TRY(ar->index(ar, "rates/level", r->level, sim->blocks.nblock));
+  bool valid = r->first >= 2 && r->first <= 4;
+  for (pw_idx k = 0; k < sim->blocks.nblock; k++) {
+    valid = valid && r->level[k] >= 0 && r->level[k] <= r->levels;
+  }
+  PW_REQUIRE(valid || !ar->loading, PW_ERR_FILE, "the checkpoint's steps of blocks are damaged");
+  return PW_OK;
 }

@@ -70,7 +70,7 @@ void pw_rates_choose(pw_sim *sim);
 /** @brief After a sort, a change of levels, or loading. */
 void pw_rates_renew(pw_sim *sim);
 
-/** @brief Save or load the levels and their steps. */
+/** @brief Save or load the levels and their steps. @return as the archive; PW_ERR_FILE: damaged. */
 pw_status pw_rates_archive(pw_sim *sim, pw_archive *ar);
 
 /** @brief Blocks that start, or end, their steps in this one. */
@@ -100,6 +100,15 @@ static inline bool pw_rates_together(const pw_sim *sim)
 static inline pw_real pw_rates_dt(const pw_sim *sim, pw_idx block)
 {
   return sim->rates ? sim->rates->span[sim->rates->level[block]] : sim->dt;
+}
+
+/** @brief Time at the start of that step, in the pass that ends it; s. A join follows the last
+ *  short step, when sim->time is its end. */
+static inline pw_real pw_rates_time(const pw_sim *sim, pw_idx block)
+{
+  const pw_rates *r = sim->rates;
+  const pw_real behind = r && r->done_below >= 0 ? 0.0 : sim->dt;
+  return r ? sim->time - (pw_rates_dt(sim, block) - behind) : sim->time;
 }
 
 /** @brief Records of field @p f that a block scatters to and takes increments of velocity from. */

@@ -69,6 +69,10 @@ pw_status pw_scene_check_method(const pw_scene *s)
   const int ratio = s->method.step_ratio_max;
   PW_REQUIRE(s->method.update != PW_IMPLICIT || !(s->method.noise_damping_per_s > 0), PW_ERR_SCENE,
              "noise_damping_per_s: implicit steps do not know it");
+  const pw_real aspect = s->method.domain_aspect_max;
+  PW_REQUIRE(!(aspect > 0) || aspect >= 1, PW_ERR_SCENE,
+             "domain_aspect_max = %g: longest to shortest half-side, 1 at least, or 0: no limit",
+             aspect);
   PW_REQUIRE(ratio <= 1 || s->method.update == PW_MUSL, PW_ERR_SCENE,
              "step_ratio_max = %d needs update: musl", ratio);
   for (int e = 0; ratio > 1 && e < s->neffect; e++) {

@@ -188,13 +188,30 @@ static pw_status create_limits(pw_sim *sim, const pw_domains *d, pw_real *larges
   return PW_OK;
 }
 
+/* A body may lie in its own hole. */
+static pw_status check_filled(const pw_scene *scene, const pw_domains *d)
+{
+  bool filled[PW_MAX_BODIES] = {false};
+  for (pw_idx i = 0; i < d->n; i++) {
+    filled[d->body[i]] = true;
+  }
+  for (int b = 0; b < scene->nbody; b++) {
+    PW_REQUIRE(filled[b] || !has_points(scene, b), PW_ERR_SCENE,
+               "body '%s' gets no points: nothing of it is left", scene->body[b].name);
+  }
+  return PW_OK;
+}
+
 static pw_status create_points(pw_sim *sim, pw_real *reach_cells)
 {
   pw_domains d = {0};
   PW_TRY(pw_domains_create(&sim->scene, &d));
   int nstate = state_count(&sim->scene);
-  pw_status status = pw_points_create(d.n, point_fields(&sim->scene, nstate), nstate,
-                                      sim->kernels->vertices, &sim->points);
+  pw_status status = check_filled(&sim->scene, &d);
+  if (status == PW_OK) {
+    status = pw_points_create(d.n, point_fields(&sim->scene, nstate), nstate,
+                              sim->kernels->vertices, &sim->points);
+  }
   if (status == PW_OK) {
     fill_points(sim, &d);
     status = create_limits(sim, &d, reach_cells);

@@ -171,11 +171,11 @@ static pw_status archive_numbers(pw_sim *sim, pw_archive *ar)
   pw_energy *e = &sim->energy;
   pw_material_counts *m = &sim->material;
   pw_real *const real[] = {
-      &sim->time,          &sim->dt,         &sim->dt_next,     &sim->dt_min,
-      &sim->dt_max,        &sim->dt_contact, &sim->load_factor, &e->strain_work,
-      &e->external,        &e->contact,      &e->spring,        &e->damping,
-      &e->absorbed,        &e->initial,      &e->kinetic,       &sim->external_last,
-      &sim->external_gross};
+      &sim->time,           &sim->dt,         &sim->dt_next,     &sim->dt_min,
+      &sim->dt_max,         &sim->dt_contact, &sim->load_factor, &e->strain_work,
+      &e->external,         &e->contact,      &e->spring,        &e->damping,
+      &e->absorbed,         &e->initial,      &e->kinetic,       &sim->external_last,
+      &sim->external_gross, &sim->released,   &sim->surplus};
   pw_off *const count[] = {&sim->step,     &sim->sorts,   &sim->limited, &sim->rebuilt,
                            &sim->reshaped, &sim->clamped, &m->substeps,  &m->rhs,
                            &m->rejected,   &m->forced,    &m->cut_off};
@@ -214,6 +214,15 @@ static pw_status check_ranges(const pw_sim *sim)
             p->home[i] < sim->mesh.nelem;
   }
   PW_REQUIRE(valid, PW_ERR_FILE, "the checkpoint's blocks of points are damaged");
+  for (pw_off k = 0; k < ranges; k++) {
+    for (pw_idx i = start[k]; i < start[k + 1]; i++) {
+      valid = valid && p->body[i] == k % sim->nbody &&
+              sim->blocks.elem_block[p->home[i]] == k / sim->nbody;
+    }
+  }
+  PW_REQUIRE(valid, PW_ERR_FILE,
+             "the checkpoint's points do not lie in the blocks of this program: it was written "
+             "with another METIS, or is damaged");
   return PW_OK;
 }
 

@@ -95,6 +95,8 @@ struct pw_sim {
   pw_energy energy;       /**< kinetic: at the end of the last step */
   pw_real external_last;  /**< energy.external at the end of the last step; J */
   pw_real external_gross; /**< sum of the sizes of its changes; J */
+  pw_real released;       /**< most that stresses have given up of what they held first; J */
+  pw_real surplus;        /**< energy at the end of the last step beyond all that was supplied; J */
   pw_block_sums *sums;    /**< [nblock] */
   pw_real stage_wall[PW_TIMER_COUNT];
   pw_real wall;

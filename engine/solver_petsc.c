@@ -27,12 +27,13 @@ static pw_status load_module(const pw_petsc_module **out)
   char text[PW_PETSC_TEXT] = "";
   if (!module) {
     void *library = dlopen(PW_PETSC_LIBRARY, RTLD_NOW | RTLD_LOCAL | RTLD_NODELETE);
-    PW_REQUIRE(library, PW_ERR_UNSUPPORTED, "PETSc cannot be loaded: %s", dlerror());
+    PW_REQUIRE(library, PW_ERR_UNSUPPORTED, "implicit.solver: PETSc cannot be loaded: %s",
+               dlerror());
     const pw_petsc_module *found = dlsym(library, PW_PETSC_SYMBOL);
     PW_REQUIRE(found && found->version == PW_PETSC_VERSION, PW_ERR_UNSUPPORTED,
-               "%s belongs to another version of this program", PW_PETSC_LIBRARY);
+               "implicit.solver: %s belongs to another version of this program", PW_PETSC_LIBRARY);
     pw_status s = found->start(text);
-    PW_REQUIRE(s == PW_OK, PW_ERR_UNSUPPORTED, "PETSc does not start: %s", text);
+    PW_REQUIRE(s == PW_OK, PW_ERR_UNSUPPORTED, "implicit.solver: PETSc does not start: %s", text);
     module = found;
   }
   *out = module;
@@ -43,8 +44,8 @@ static pw_status load_module(const pw_petsc_module **out)
 {
   (void)out;
   return pw_error_set(PW_ERR_UNSUPPORTED, __FILE__, __LINE__, __func__,
-                      "this program was built without PETSc (Debian: petsc-dev), which the engines "
-                      "petsc_gamg and petsc_ilu need");
+                      "implicit.solver: this program was built without PETSc (Debian: petsc-dev), "
+                      "which the engines petsc_gamg and petsc_ilu need");
 }
 #endif
 

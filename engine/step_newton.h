@@ -109,7 +109,8 @@ void pw_newton_destroy(pw_newton **n);
  * @return PW_OK; PW_RETRY_DIVERGED when a part fails max_cuts times in a row or may not be cut, with
  *         the residuals in the error record: the model stands at the end of its last converged part;
  *         PW_ERR_POINT_LOST, PW_ERR_SOLVER, PW_ERR_MEMORY, or what load->move gives; PW_ERR_SCENE
- *         for a free mechanism where those are errors; PW_ERR_ARGUMENT for dynamics without step_s.
+ *         for a free mechanism where those are errors, and for loads on nodes without points;
+ *         PW_ERR_ARGUMENT for dynamics without step_s.
  */
 pw_status pw_newton_step(pw_newton *n, const pw_newton_load *load, pw_newton_report *report);
 

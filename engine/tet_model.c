@@ -376,7 +376,10 @@ void pw_tet_model_volumes(const pw_tet_model *m, const pw_real *u, pw_real *rati
   ratio[1] = -INFINITY;
   for (pw_idx p = 0; p < m->mesh->npatch; p++) {
     pw_patch_motion motion;
-    pw_patch_move(m, p, u, &motion);
+    if (pw_patch_move(m, p, u, &motion) >= 0) { /* an element is turned inside out */
+      ratio[0] = pw_min(ratio[0], 0.0);
+      continue;
+    }
     for (pw_idx s = 0; s < m->mesh->per && motion.nactive > 0; s++) {
       if (motion.active[s]) {
         ratio[0] = pw_min(ratio[0], motion.motion[s].det);

@@ -72,25 +72,25 @@ typedef struct pw_tet_model {
   uint8_t *fixed;      /**< [3][nnode] 1: displacement prescribed. Set by the caller */
   pw_real *prescribed; /**< [3][nnode] displacement over the step where fixed; m. Likewise */
   pw_real *external;   /**< [3][nnode] force at the end of the step; N. Likewise */
-  pw_real *follow;     /**< [3][nnode] force of loads that follow the surface, of the last evaluation;
+  pw_real *follow;  /**< [3][nnode] force of loads that follow the surface, of the last evaluation;
                             NULL: the model is not made for them; N */
-  pw_idx *equation;    /**< [3][nnode] row, or -1: fixed, or no point near the node */
-  pw_idx *numbered;    /**< [3][nnode] scratch of the numbering */
-  uint8_t *active;     /**< [nnode] 1: an element with points has the node */
-  pw_real *force;      /**< [3][nnode] internal force of the last evaluation; N */
-  pw_real *lift;       /**< [3][nnode] tangent times prescribed where fixed; N */
-  pw_real *stiff;      /**< [nblock] squares of forces that a strain of 1 makes in a block; N2 */
-  pw_real rounding;    /**< norm of the forces that rounding of strains may leave, known from the
+  pw_idx *equation; /**< [3][nnode] row, or -1: fixed, or no point near the node */
+  pw_idx *numbered; /**< [3][nnode] scratch of the numbering */
+  uint8_t *active;  /**< [nnode] 1: an element with points has the node */
+  pw_real *force;   /**< [3][nnode] internal force of the last evaluation; N */
+  pw_real *lift;    /**< [3][nnode] tangent times prescribed where fixed; N */
+  pw_real *stiff;   /**< [nblock] squares of forces that a strain of 1 makes in a block; N2 */
+  pw_real rounding; /**< norm of the forces that rounding of strains may leave, known from the
                               last evaluation with a tangent; N */
-  pw_idx *bad;         /**< [nblock] first failing element of a block, or -1 */
-  const char **why;    /**< [nblock] what its material says, or NULL */
-  pw_real *mass;       /**< [nnode] lumped masses of the step, known while has_mass; kg */
-  bool has_mass;       /**< see engine/tet_loads.h */
+  pw_idx *bad;      /**< [nblock] first failing element of a block, or -1 */
+  const char **why; /**< [nblock] what its material says, or NULL */
+  pw_real *mass;    /**< [nnode] lumped masses of the step, known while has_mass; kg */
+  bool has_mass;    /**< see engine/tet_loads.h */
   pw_tet_inertia inertia;
   pw_tet_ghost ghost;
   struct pw_tet_follow *surface; /**< surfaces under such loads, borrowed; or NULL */
-  pw_walk_counts walked; /**< searches of the last pw_tet_model_begin() */
-  pw_walk_counts *chunk; /**< counts of a chunk of points */
+  pw_walk_counts walked;         /**< searches of the last pw_tet_model_begin() */
+  pw_walk_counts *chunk;         /**< counts of a chunk of points */
 } pw_tet_model;
 
 /**

@@ -250,7 +250,7 @@ static void stress_batch(pw_sim *sim, int b, batch *s, pw_idx first, pw_idx n, p
                          .ld = p->ld,
                          .ldi = PW_CHUNK,
                          .dt = pw_rates_dt(sim, block),
-                         .time = sim->time,
+                         .time = pw_rates_time(sim, block),
                          .step = sim->step,
                          .dstrain = s->dstrain,
                          .spin = s->spin,

@@ -51,7 +51,8 @@ pw_status pw_update_check(pw_sim *sim);
 
 /**
  * @brief Close the books of a step, and stop a run whose energy balance shows more energy than
- *        was ever supplied: the mark of a step beyond the stability limit.
+ *        was ever supplied at the end of two steps running: the mark of steps beyond the
+ *        stability limit.
  * @return PW_OK; PW_RETRY_DIVERGED.
  */
 pw_status pw_update_energy(pw_sim *sim);

@@ -175,7 +175,7 @@ pw_status pw_element_read(const char *path, int nset, const char *const *set, pw
   pw_scene *scene = calloc(1, sizeof *scene);
   pw_element_test *test = calloc(1, sizeof *test);
   const pw_reader_source from = {path, nset, set};
-  const pw_reader_use use = {read_test, test, scene};
+  const pw_reader_use use = {read_test, test, scene, "a test", "materials, element and stages"};
   pw_status status = PW_ERR_MEMORY;
   *messages = NULL;
   if (scene && test) {

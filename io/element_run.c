@@ -154,7 +154,7 @@ static pw_exit run_test(const pw_element_test *t, const pw_run_folder *folder, F
   pw_status status = pw_path_join(folder->path, "element.csv", csv);
   status = status == PW_OK ? pw_make_folder(folder->path) : status;
   if (status != PW_OK) {
-    return complain(err, PW_EXIT_USAGE, status);
+    return complain(err, PW_EXIT_FAILED, status);
   }
   status = write_csv(t, csv, &rows);
   if (status != PW_OK) {

@@ -3,17 +3,21 @@
 
 #ifdef PW_GMSH_LIBRARY
 
+#include <ctype.h>
 #include <dlfcn.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <unistd.h>
 
+#include "engine/core/mem.h"
+#include "engine/threads.h"
 #include "io/atomic_file.h"
 
 enum { MAX_NUMBERS = 16 };
 
 static pw_gmsh_library gmsh;
+static int threads; /* OpenMP's choice before gmsh was started, which sets it to one */
 
 static pw_status load_library(void)
 {
@@ -65,6 +69,49 @@ static pw_status split_numbers(char *text, char **argument, int *count)
   return PW_OK;
 }
 
+static bool in_word(char c)
+{
+  return isalnum((unsigned char)c) || c == '_';
+}
+
+static bool has_word(const char *text, const char *word)
+{
+  const size_t length = strlen(word);
+  bool found = false;
+  for (const char *at = strstr(text, word); at && !found; at = strstr(at + 1, word)) {
+    found = (at == text || !in_word(at[-1])) && !in_word(at[length]);
+  }
+  return found;
+}
+
+/* gmsh is silent about a number that its script never asks for. Scripts may take in others, which
+ * are not looked at. */
+static pw_status check_names(const pw_gmsh_recipe *recipe, char *const *argument, int count)
+{
+  pw_status status = PW_OK;
+  long size = 0;
+  char *text = NULL;
+  FILE *file = fopen(recipe->path, "rb");
+  if (file && fseek(file, 0, SEEK_END) == 0 && (size = ftell(file)) >= 0) {
+    rewind(file);
+    status = pw_mem_alloc("geometry script", size + 1, 1, &text);
+    size = text ? (long)fread(text, 1, (size_t)size, file) : 0;
+  }
+  if (file) {
+    fclose(file);
+  }
+  const bool whole = text && !has_word(text, "Include") && !has_word(text, "Merge");
+  const char *missing = NULL;
+  for (int k = 1; k < count && whole && !missing; k += 3) { /* -setnumber, name, value */
+    missing = has_word(text, argument[k + 1]) ? NULL : argument[k + 1];
+  }
+  pw_mem_free(&text);
+  PW_TRY(status);
+  PW_REQUIRE(!missing, PW_ERR_SCENE, "mesh.numbers: the name '%s' does not occur in %s", missing,
+             recipe->path);
+  return PW_OK;
+}
+
 static pw_status initialize(const pw_gmsh_recipe *recipe)
 {
   static char program[] = "gmsh";
@@ -73,8 +120,13 @@ static pw_status initialize(const pw_gmsh_recipe *recipe)
   if (recipe) {
     snprintf(text, sizeof text, "%s", recipe->numbers);
     PW_TRY(split_numbers(text, argument, &count));
+    PW_TRY(check_names(recipe, argument, count));
   }
+  threads = pw_threads_default();
   gmsh.gmshInitialize(count, argument, 0, &failed);
+  if (failed) {
+    pw_threads_set_default(threads);
+  }
   PW_REQUIRE(!failed, PW_ERR_UNSUPPORTED, "gmsh cannot be started");
   gmsh.gmshOptionSetNumber("General.Terminal", 0.0, &failed); /* no messages */
   gmsh.gmshOptionSetNumber("General.NumThreads", 1.0, &failed);
@@ -164,6 +216,7 @@ void pw_gmsh_close(const pw_gmsh_library *library)
 {
   int failed = 0;
   library->gmshFinalize(&failed);
+  pw_threads_set_default(threads);
 }
 
 #else

@@ -11,7 +11,8 @@
 #include "engine/core/mem.h"
 #include "io/gmsh_library.h"
 
-enum { LINEAR = 4, TEN_NODES = 11, TRIANGLE = 2, SIX_NODES = 9 }; /* gmsh's types of elements */
+/* gmsh's types of elements */
+enum { LINEAR = 4, TEN_NODES = 11, TWENTY_NODES = 29, TRIANGLE = 2, SIX_NODES = 9 };
 enum { MAX_TAG = 1 << 28 };
 
 static const pw_gmsh_library *gmsh;
@@ -50,6 +51,8 @@ static pw_status choose_type(reading *r)
   }
   gmsh->gmshFree(types);
   PW_REQUIRE(!failed && (n > 0), PW_ERR_SCENE, "%s: no tetrahedra in the file", r->path);
+  PW_REQUIRE(other != TWENTY_NODES, PW_ERR_SCENE,
+             "%s: tetrahedra of third order: first and second order are known", r->path);
   PW_REQUIRE(other == 0, PW_ERR_SCENE, "%s: elements of gmsh's type %d are no tetrahedra", r->path,
              other);
   PW_REQUIRE(!(linear && ten), PW_ERR_SCENE, "%s: linear and ten-node tetrahedra are mixed",
@@ -114,6 +117,7 @@ static pw_status tabulate(const reading *r, const size_t *tag, size_t n, pw_idx 
 static pw_status copy_cells(const reading *r, pw_gmsh_mesh *m, pw_idx *cell)
 {
   const size_t per = (size_t)m->mesh.nodes;
+  size_t absent = 0; /* nodes of cells that have fewer of them */
   pw_idx *used = NULL;
   PW_TRY(pw_mem_alloc("mesh file: nodes used", (pw_off)r->nnode, sizeof *used, &used));
   for (size_t i = 0; i < per * r->ncell; i++) {
@@ -123,12 +127,14 @@ static pw_status copy_cells(const reading *r, pw_gmsh_mesh *m, pw_idx *cell)
     if (cell[i] >= 0) {
       used[cell[i]] = 1;
     }
+    absent += cell[i] < 0;
   }
   size_t lost = 0;
   while (lost < r->nnode && used[lost]) {
     lost++;
   }
   pw_mem_free(&used);
+  PW_REQUIRE(absent == 0, PW_ERR_SCENE, "%s: linear and ten-node tetrahedra are mixed", r->path);
   const double *x = r->x + 3 * (size_t)r->node_at[lost < r->nnode ? lost : 0];
   PW_REQUIRE(lost == r->nnode, PW_ERR_SCENE,
              "%s: node %lld at (%g, %g, %g) belongs to no tetrahedron", r->path,

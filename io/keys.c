@@ -4,6 +4,7 @@
 #include "engine/scene_keys.h"
 #include "engine/sim_state.h"
 
+#include <stdlib.h>
 #include <string.h>
 
 /* Suffixes of names and their units; the longest that fits is taken. */
@@ -31,8 +32,23 @@ const char *pw_key_unit(const pw_key *key)
   return unit;
 }
 
+enum { DIGITS = 26 /* of a number with 17 digits, sign, point and exponent */ };
+
+/* As few digits as tell the number from every other. */
+static const char *digits(pw_real value, char text[DIGITS])
+{
+  for (int n = 6; n <= 17; n++) {
+    snprintf(text, DIGITS, "%.*g", n, value);
+    if (strtod(text, NULL) == value) {
+      break;
+    }
+  }
+  return text;
+}
+
 void pw_key_range(const pw_key *key, char *out)
 {
+  char low[DIGITS], high[DIGITS];
   bool below = key->lo <= -PW_HUGE, above = key->hi >= PW_HUGE, positive = key->lo == PW_TINY;
   out[0] = '\0';
   if (key->type != PW_KEY_REAL && key->type != PW_KEY_PAIR && key->type != PW_KEY_TRIPLE &&
@@ -44,13 +60,13 @@ void pw_key_range(const pw_key *key, char *out)
   } else if (positive && above) {
     snprintf(out, PW_KEY_RANGE, "> 0");
   } else if (positive) {
-    snprintf(out, PW_KEY_RANGE, "> 0 and <= %g", key->hi);
+    snprintf(out, PW_KEY_RANGE, "> 0 and <= %s", digits(key->hi, high));
   } else if (above) {
-    snprintf(out, PW_KEY_RANGE, ">= %g", key->lo);
+    snprintf(out, PW_KEY_RANGE, ">= %s", digits(key->lo, low));
   } else if (below) {
-    snprintf(out, PW_KEY_RANGE, "<= %g", key->hi);
+    snprintf(out, PW_KEY_RANGE, "<= %s", digits(key->hi, high));
   } else {
-    snprintf(out, PW_KEY_RANGE, "%g to %g", key->lo, key->hi);
+    snprintf(out, PW_KEY_RANGE, "%s to %s", digits(key->lo, low), digits(key->hi, high));
   }
 }
 

@@ -66,3 +66,38 @@ pw_due pw_output_due(const pw_scene *scene, pw_real old_s, pw_real new_s)
   due.picture = scene->output.pictures && (due.picture || end);
   return due;
 }
+
+/* When picture i is drawn, the last one at the end: implicit steps on a grid are not cut for it. */
+static pw_real picture_time(const pw_scene *scene, int i)
+{
+  const pw_reals *times = &scene->output.picture_times_s;
+  const pw_real end = scene->time.end_s, at = i < times->n ? pw_min(times->v[i], end) : end;
+  const int steps = scene->solid.implicit.steps;
+  if (scene->method.update != PW_IMPLICIT || scene->geometry == PW_SOLID || steps < 1) {
+    return at;
+  }
+  return ceil(at / end * steps * (1.0 - SINGLE_SLACK)) * end / steps;
+}
+
+/* Whether two times are one, or differ in so many decimals, however the last of them is rounded. */
+static bool told_apart(const pw_scene *scene, pw_real a, pw_real b, int decimals)
+{
+  const pw_real scale = pow(10.0, decimals), early = pw_min(a, b), late = pw_max(a, b);
+  return late - early <= SINGLE_SLACK * scene->time.end_s ||
+         floor(late * scale + 0.5 - 1e-6) > floor(early * scale + 0.5 + 1e-6);
+}
+
+int pw_picture_decimals(const pw_scene *scene)
+{
+  const int n = scene->output.picture_times_s.n;
+  int decimals = 3;
+  for (int i = 0; i <= n; i++) {
+    for (int j = 0; j < i; j++) {
+      const pw_real a = picture_time(scene, i), b = picture_time(scene, j);
+      while (decimals < 12 && !told_apart(scene, a, b, decimals)) {
+        decimals++;
+      }
+    }
+  }
+  return decimals;
+}

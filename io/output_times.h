@@ -33,4 +33,7 @@ pw_real pw_output_next(const pw_scene *scene, pw_real time_s);
  *  (checkpoints). */
 pw_due pw_output_due(const pw_scene *scene, pw_real old_s, pw_real new_s);
 
+/** @brief Decimals that tell the times of all pictures of a run apart, in seconds: 3 at least. */
+int pw_picture_decimals(const pw_scene *scene);
+
 #endif /* PW_IO_OUTPUT_TIMES_H */

@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "engine/core/mem.h"
+#include "io/output_times.h"
 #include "io/pictures_plot.h"
 #include "io/pictures_series.h"
 #include "io/point_values.h"
@@ -42,6 +43,7 @@ struct picture {
   const pw_points *p;
   const quantity *what;
   bool soil_only; /* other bodies are grey */
+  int decimals;   /* of times */
   pw_state_column void_ratio;
   pw_real x[2], y[2];        /* window; m */
   int width, height, px, py; /* canvas and plot area; pixels */
@@ -324,8 +326,8 @@ static void print_frame(const picture *c, pw_plot *plot)
   if (c->px < NARROW) {
     fprintf(f, "set xtics (%.9g)\n", c->x[1]); /* there is no room for more numbers */
   }
-  fprintf(f, "set label 1 '%s, t = %.3f s' at screen %g,%g left font ',20'\n", c->what->title,
-          pw_sim_time(c->sim), LEFT / w, (h - 30.0) / h);
+  fprintf(f, "set label 1 '%s, t = %.*f s' at screen %g,%g left font ',20'\n", c->what->title,
+          c->decimals, pw_sim_time(c->sim), LEFT / w, (h - 30.0) / h);
   fprintf(f, "set label 3 ");
   pw_plot_text(plot, c->scene->title);
   fprintf(f, " at screen %g,%g left font ',13' textcolor '#606060' noenhanced\n", LEFT / w,
@@ -365,7 +367,8 @@ static pw_status draw(picture *c, const char *folder, const quantity *what)
   c->what = what;
   PW_TRY(find_values(c));
   choose_range(c);
-  snprintf(name, sizeof name, "%s_t%06.3fs.png", what->file, pw_sim_time(c->sim));
+  snprintf(name, sizeof name, "%s_t%0*.*fs.png", what->file, c->decimals + 3, c->decimals,
+           pw_sim_time(c->sim));
   pw_series_picture p = {.own = {c->range[0], c->range[1]}, .width = c->width, .height = c->height};
   snprintf(p.quantity, sizeof p.quantity, "%s", what->file);
   snprintf(p.unit, sizeof p.unit, "%s", !what->unit ? "stress" : *what->unit ? what->unit : "-");
@@ -409,6 +412,7 @@ pw_status pw_pictures_fields(const char *folder, const pw_sim *sim)
   PW_TRY(pw_mem_alloc("pictures", room, sizeof *c.work, &c.work));
   pw_status status = pw_mem_alloc("pictures: values", c.p->n, sizeof *c.value, &c.value);
   c.soil_only = has_soil(c.scene);
+  c.decimals = pw_picture_decimals(c.scene);
   choose_window(&c);
   choose_size(&c);
   status = status == PW_OK ? draw_all(&c, folder) : status;

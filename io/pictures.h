@@ -18,8 +18,8 @@
 #include "engine/sim.h"
 
 /**
- * @brief Pictures of the fields now: FOLDER/vertical_stress_t02.000s.png and so on. The folder is
- *        made when missing.
+ * @brief Pictures of the fields now: FOLDER/vertical_stress_t02.000s.png and so on, with more
+ *        decimals where pictures are less than 1 ms apart. The folder is made when missing.
  * @return PW_OK; PW_ERR_UNSUPPORTED when there is no gnuplot, with the name of the package;
  *         PW_ERR_FILE when gnuplot failed, with its message, or the file cannot be written;
  *         PW_ERR_MEMORY.

@@ -11,6 +11,7 @@
 #include "io/run_outputs.h"
 #include "io/run_signals.h"
 #include "io/scene_file.h"
+#include "io/solid_mesh.h"
 #include "io/summary.h"
 
 /* One run from reading its scene to closing its files. */
@@ -98,13 +99,21 @@ static pw_exit blame_scene(run *r, pw_status status)
 
 static pw_exit create(run *r)
 {
+  const char *geometry = pw_solid_mesh_geometry(&r->scene);
+  if (geometry && !r->options->quiet) {
+    fprintf(r->err, "meshing %s ...\n", geometry);
+  }
   r->job.kind = pw_job_kind_of(&r->scene);
   pw_status status = r->job.kind->create(&r->scene, r->options->threads, &r->job.sim);
   if (status != PW_OK) {
-    bool bad_scene = status == PW_ERR_SCENE || status == PW_ERR_ARGUMENT;
+    bool bad_scene =
+        status == PW_ERR_SCENE || status == PW_ERR_ARGUMENT || status == PW_ERR_UNSUPPORTED;
     return bad_scene ? blame_scene(r, status) : complain(r, PW_EXIT_FAILED, status);
   }
-  pw_run_outputs_prepare(&r->outputs, &r->job, &r->scene);
+  status = pw_run_outputs_prepare(&r->outputs, &r->job, &r->scene);
+  if (status != PW_OK) {
+    return blame_scene(r, status);
+  }
   if (r->resumed) {
     status = pw_archive_read(r->folder.checkpoint, r->job.kind->archive, r->job.sim);
     if (status != PW_OK) {
@@ -167,6 +176,13 @@ static pw_status loop(run *r)
   return PW_OK;
 }
 
+static void print_warnings(const run *r, FILE *to)
+{
+  for (int i = 0; i < r->outputs.nwarning; i++) {
+    fprintf(to, "warning: %s\n", r->outputs.warning[i]);
+  }
+}
+
 static void print_results(run *r)
 {
   pw_record *results = &r->outputs.row;
@@ -186,9 +202,7 @@ static void print_results(run *r)
     }
     fputc('\n', r->out);
   }
-  for (int i = 0; i < r->outputs.nwarning; i++) {
-    fprintf(r->out, "warning: %s\n", r->outputs.warning[i]);
-  }
+  print_warnings(r, r->out);
 }
 
 static void print_end(run *r, const char *word, bool with_results)
@@ -230,6 +244,8 @@ static pw_exit fail(run *r, pw_status status)
   snprintf(text, sizeof text, "%s%s%s", said ? "" : code, said ? "" : ": ", detail);
   pw_progress_clear(&r->progress);
   fprintf(r->err, "error: %s\n", text);
+  pw_run_outputs_collect(&r->outputs);
+  print_warnings(r, r->err);
   if (write_summary(r, "failed", text) != PW_OK) {
     fprintf(r->err, "no summary: %s\n", pw_error_text());
   }

@@ -73,9 +73,10 @@ static void print_sizes(const void *sim, bool bound, FILE *out)
           report.threads == 1 ? "" : "s", bound ? " bound to cores" : "");
 }
 
-static void check(void *sim, FILE *out)
+static pw_status check(void *sim, FILE *out)
 {
   pw_check_report(sim, out);
+  return PW_OK;
 }
 
 static pw_status snapshot(pw_snapshots *s, const void *sim)

@@ -118,7 +118,7 @@ static pw_status remove_files(const char *folder, const char *const *endings)
 pw_status pw_run_folder_clear(const pw_run_folder *f)
 {
   static const char *const picture[] = {".png", ".field", NULL};
-  static const char *const paraview[] = {".vtp", ".vti", ".vtr", ".pvd", NULL};
+  static const char *const paraview[] = {".vtp", ".vtu", ".vti", ".vtr", ".pvd", NULL};
 
   PW_TRY(remove_file(f->checkpoint));
   PW_TRY(remove_file(f->summary));

@@ -76,9 +76,9 @@ static void print_sizes(const void *sim, bool bound, FILE *out)
           r.threads == 1 ? "" : "s", bound ? " bound to cores" : "");
 }
 
-static void check(void *sim, FILE *out)
+static pw_status check(void *sim, FILE *out)
 {
-  pw_solid_check_report(sim, out);
+  return pw_solid_check_report(sim, out);
 }
 
 static pw_status snapshot(pw_snapshots *s, const void *sim)

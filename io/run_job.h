@@ -38,8 +38,8 @@ typedef struct pw_job_kind {
   pw_status (*summary)(const char *path, const void *sim, const pw_summary_info *info);
   /** @brief A line of sizes: points, elements, blocks, threads. */
   void (*print_sizes)(const void *sim, bool bound, FILE *out);
-  /** @brief What `pilewright check` says. */
-  void (*check)(void *sim, FILE *out);
+  /** @brief What `pilewright check` says. @return PW_OK, or what would end the first step. */
+  pw_status (*check)(void *sim, FILE *out);
   pw_status (*snapshot)(pw_snapshots *s, const void *sim);
   pw_status (*last_snapshot)(pw_snapshots *s, const void *sim); /**< besides that; or NULL */
   pw_status (*pictures)(const char *folder, const void *sim);

@@ -25,6 +25,14 @@ void pw_run_outputs_warn(pw_run_outputs *o, const char *text)
   }
 }
 
+void pw_run_outputs_collect(pw_run_outputs *o)
+{
+  const char *text;
+  for (int i = 0; o->job->kind->warning && (text = o->job->kind->warning(o->job->sim, i)); i++) {
+    pw_run_outputs_warn(o, text);
+  }
+}
+
 /* What could not be drawn is worth a warning, not the run. */
 static pw_status warn_of(pw_run_outputs *o, pw_status s)
 {
@@ -102,12 +110,35 @@ static pw_status open_files(pw_run_outputs *o, bool resumed)
   return status;
 }
 
-void pw_run_outputs_prepare(pw_run_outputs *o, const pw_job *job, const pw_scene *scene)
+pw_status pw_run_outputs_prepare(pw_run_outputs *o, const pw_job *job, const pw_scene *scene)
 {
   o->job = job;
   o->scene = scene;
   o->header.n = 0;
   job->kind->history(job->sim, &o->header);
+  PW_REQUIRE(o->header.asked <= PW_RECORD_MAX, PW_ERR_SCENE,
+             "history.csv would have %d columns, at most %d can be written: fewer bodies, boundary "
+             "or other sections are needed",
+             o->header.asked, PW_RECORD_MAX);
+  job->kind->results(job->sim, &o->row);
+  PW_REQUIRE(o->row.asked <= PW_RECORD_MAX, PW_ERR_SCENE,
+             "summary.json would have %d results, at most %d can be written: fewer bodies or other "
+             "sections are needed",
+             o->row.asked, PW_RECORD_MAX);
+  return PW_OK;
+}
+
+static void warn_of_pictures(pw_run_outputs *o)
+{
+  const pw_reals *times = &o->scene->output.picture_times_s;
+  for (int i = 0; i < times->n && o->scene->output.pictures; i++) {
+    char text[PW_WARNING_TEXT];
+    if (times->v[i] > (1.0 + 1e-9) * o->scene->time.end_s) {
+      snprintf(text, sizeof text, "no picture at %g s: the run ends at %g s", times->v[i],
+               o->scene->time.end_s);
+      pw_run_outputs_warn(o, text);
+    }
+  }
 }
 
 pw_status pw_run_outputs_open(pw_run_outputs *o, const pw_run_folder *folder, bool resumed)
@@ -116,6 +147,7 @@ pw_status pw_run_outputs_open(pw_run_outputs *o, const pw_run_folder *folder, bo
   o->checkpoint_step = resumed ? state_of(o).steps : -1;
   o->checkpoint_wall_s = pw_wall_clock();
   PW_TRY(open_files(o, resumed));
+  warn_of_pictures(o);
   if (resumed) {
     return PW_OK;
   }
@@ -126,12 +158,8 @@ pw_status pw_run_outputs_open(pw_run_outputs *o, const pw_run_folder *folder, bo
 pw_status pw_run_outputs_step(pw_run_outputs *o, pw_real old_s)
 {
   pw_due due = pw_output_due(o->scene, old_s, state_of(o).time_s);
-  const char *text;
 
-  for (int i = 0; o->job->kind->warning && (text = o->job->kind->warning(o->job->sim, i)); i++) {
-    pw_run_outputs_warn(o, text);
-  }
-
+  pw_run_outputs_collect(o);
   PW_TRY(write_due(o, due));
   if (due.checkpoint || due.end || pw_wall_clock() - o->checkpoint_wall_s > CHECKPOINT_WALL_S) {
     return pw_run_outputs_checkpoint(o);

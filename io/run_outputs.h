@@ -35,8 +35,9 @@ typedef struct pw_run_outputs {
 /**
  * @brief Ask a new simulation for the names of its history, before a checkpoint is loaded: asking
  *        for a row ends the interval over which effects take means.
+ * @return PW_OK; PW_ERR_SCENE: more columns or results than there is room for.
  */
-void pw_run_outputs_prepare(pw_run_outputs *o, const pw_job *job, const pw_scene *scene);
+pw_status pw_run_outputs_prepare(pw_run_outputs *o, const pw_job *job, const pw_scene *scene);
 
 /**
  * @brief Open the files of a run at its start, or, when @p resumed, those of the run whose
@@ -58,6 +59,9 @@ pw_status pw_run_outputs_finish(pw_run_outputs *o);
 
 /** @brief Note a warning (once) for the summary and the person; ignored when there are too many. */
 void pw_run_outputs_warn(pw_run_outputs *o, const char *text);
+
+/** @brief Note what the simulation warns of. */
+void pw_run_outputs_collect(pw_run_outputs *o);
 
 /** @brief Close all files; a zeroed struct is accepted. @return PW_OK; PW_ERR_FILE. */
 pw_status pw_run_outputs_close(pw_run_outputs *o);

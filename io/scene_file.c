@@ -136,8 +136,11 @@ static void read_scene(pw_reader *r, void *unused)
   }
 }
 
+static const char scene_needs[] =
+    "geometry, materials, bodies, and grid and time or mesh and implicit";
+
 /* The tree of the file with the --set entries applied, or NULL after an error. */
-static pw_yaml_node *make_tree(int nset, pw_yaml_messages *m)
+static pw_yaml_node *make_tree(int nset, const pw_reader_use *use, pw_yaml_messages *m)
 {
   static const unsigned char mark[] = {0xef, 0xbb, 0xbf}; /* some editors begin UTF-8 with it */
   if (m->length >= sizeof mark && memcmp(m->text, mark, sizeof mark) == 0) {
@@ -152,11 +155,10 @@ static pw_yaml_node *make_tree(int nset, pw_yaml_messages *m)
   pw_yaml_node *root = pw_yaml_parse(m->text, m->length, -1, m);
   if (root && root->kind != PW_YAML_MAP) {
     if (pw_yaml_is_null(root)) {
-      pw_yaml_error(m, &file_start,
-                    "the file is empty: a scene needs at least geometry, grid, "
-                    "time, materials and bodies");
+      pw_yaml_error(m, &file_start, "the file is empty: %s needs at least %s", use->what,
+                    use->needs);
     } else {
-      pw_yaml_error(m, &root->place, "a scene must be a mapping of sections");
+      pw_yaml_error(m, &root->place, "%s must be a mapping of sections", use->what);
     }
     pw_yaml_free(&root);
   }
@@ -191,7 +193,7 @@ static pw_status read_text(const char *text, size_t length, const pw_reader_sour
   *messages = NULL;
   pw_scene *scene = calloc(1, sizeof *scene);
   m.out_of_memory = !scene;
-  pw_yaml_node *root = scene ? make_tree(from->nset, &m) : NULL;
+  pw_yaml_node *root = scene ? make_tree(from->nset, use, &m) : NULL;
   if (root) {
     pw_reader reader = {.m = &m, .root = root, .scene = scene};
     use->read(&reader, use->ctx);
@@ -210,7 +212,7 @@ pw_status pw_scene_read_text(const char *text, size_t length, const char *name, 
                              const char *const *set, pw_scene *out, char **messages)
 {
   const pw_reader_source from = {name, nset, set};
-  const pw_reader_use use = {read_scene, NULL, out};
+  const pw_reader_use use = {read_scene, NULL, out, "a scene", scene_needs};
   return read_text(text, length, &from, &use, messages);
 }
 
@@ -250,7 +252,7 @@ pw_status pw_scene_read_file(const char *path, int nset, const char *const *set,
                              char **messages)
 {
   const pw_reader_source from = {path, nset, set};
-  const pw_reader_use use = {read_scene, NULL, out};
+  const pw_reader_use use = {read_scene, NULL, out, "a scene", scene_needs};
   return pw_reader_file(&from, &use, messages);
 }
 
@@ -303,7 +305,7 @@ char *pw_scene_locate(const char *path, int nset, const char *const *set, const 
   locating l = {.message = copy};
   pw_scene *scene = calloc(1, sizeof *scene);
   const pw_reader_source from = {path, nset, set};
-  const pw_reader_use use = {locate, &l, scene};
+  const pw_reader_use use = {locate, &l, scene, "a scene", scene_needs};
   if (scene) {
     pw_reader_file(&from, &use, &messages);
   }

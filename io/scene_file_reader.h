@@ -52,6 +52,7 @@ typedef struct pw_reader_use {
   void (*read)(pw_reader *r, void *ctx);
   void *ctx;
   pw_scene *out;
+  const char *what, *needs; /**< in messages: what the file is, sections it cannot do without */
 } pw_reader_use;
 
 /** @brief Read a file of scene sections; messages and return as pw_scene_read_file(). */

@@ -65,7 +65,21 @@ static void print_sizes(const pw_implicit *sim, FILE *out)
   fprintf(out, "threads      %d\n", sim->model.threads);
 }
 
-/* Wall clock of one iteration with the tangent of the start; < 0: it cannot be factored. */
+/* The first step as far as its tangent at zero displacement. */
+static pw_status begin(pw_implicit *sim, const pw_real *zero)
+{
+  pw_tet_model *m = &sim->model;
+  pw_tet_rates *rates = pw_newton_rates(sim->newton);
+  m->dt = sim->scene.solid.implicit.step_s;
+  PW_TRY(pw_tet_model_begin(m));
+  if (rates) {
+    pw_tet_rates_start(m, rates);
+    pw_tet_rates_update(m, rates, zero, m->dt);
+  }
+  return PW_OK;
+}
+
+/* Wall clock of one iteration with the tangent of the start. */
 static pw_status time_iteration(pw_implicit *sim, pw_real *wall, pw_solver_counts *counts,
                                 char *solver_text, size_t size)
 {
@@ -73,9 +87,9 @@ static pw_status time_iteration(pw_implicit *sim, pw_real *wall, pw_solver_count
   pw_real *zero = NULL, *x = NULL;
   pw_solver *solver = NULL;
   const pw_off dofs = 3 * (pw_off)sim->mesh.tets.nnode;
-  PW_TRY(pw_tet_model_begin(m));
   pw_status s = pw_mem_alloc("check: displacement", dofs, sizeof *zero, &zero);
   s = s == PW_OK ? pw_mem_alloc("check: solution", dofs, sizeof *x, &x) : s;
+  s = s == PW_OK ? begin(sim, zero) : s;
   pw_solver_options options = pw_solver_defaults(pw_tet_model_is_symmetric(m));
   options.engine = (pw_solver_engine)sim->scene.solid.implicit.solver;
   options.x = m->mesh->x;
@@ -101,7 +115,7 @@ static pw_status time_iteration(pw_implicit *sim, pw_real *wall, pw_solver_count
   return s;
 }
 
-static void print_estimate(pw_implicit *sim, FILE *out)
+static pw_status print_estimate(pw_implicit *sim, FILE *out)
 {
   pw_real wall = 0.0;
   pw_solver_counts counts = {0};
@@ -113,8 +127,8 @@ static void print_estimate(pw_implicit *sim, FILE *out)
           (long long)r.nonzeros, solver_text);
   fprintf(out, "memory       %.1f MiB without the solver\n", (pw_real)pw_mem_bytes() / 1048576.0);
   if (s != PW_OK) {
-    fprintf(out, "start        the tangent cannot be factored: %s\n", pw_error_text());
-    return;
+    fprintf(out, "start        the tangent cannot be factored\n");
+    return s;
   }
   const int steps = sim->scene.solid.implicit.steps;
   fprintf(out, "factor       %lld nonzeros, %.1f MiB\n", (long long)counts.factor_nonzeros,
@@ -124,12 +138,47 @@ static void print_estimate(pw_implicit *sim, FILE *out)
           "2 or 3, steps in which yield spreads up to 7\n",
           pw_duration_text(wall * usual_iterations * steps, text, sizeof text), steps,
           usual_iterations, wall);
+  return PW_OK;
 }
 
-void pw_solid_check_report(pw_implicit *sim, FILE *out)
+/* Pieces that nothing holds, after the first step has begun. */
+static pw_status print_mechanisms(const pw_implicit *sim, FILE *out)
 {
+  const pw_scene_implicit *p = &sim->scene.solid.implicit;
+  pw_mechanism mechanism = {.piece = NULL};
+  pw_mechanism_report r;
+  if (pw_newton_rates(sim->newton) || p->mechanisms == PW_MECHANISMS_IGNORE) {
+    return PW_OK;
+  }
+  PW_TRY(pw_mechanism_create(&sim->model, &mechanism));
+  pw_mechanism_find(&sim->model, &mechanism, &r);
+  pw_mechanism_destroy(&mechanism);
+  PW_REQUIRE(r.free == 0 || p->mechanisms != PW_MECHANISMS_ERROR, PW_ERR_SCENE,
+             "implicit.mechanisms: %d of %d pieces of the body, %d elements, are held by nothing; "
+             "the first one has %d free motions",
+             r.free, r.pieces, r.elements, r.motions);
+  if (r.free > 0) {
+    fprintf(out,
+            "warning: %d of %d pieces of the body, %d elements, are held by nothing; the first one "
+            "has %d free motions\n",
+            r.free, r.pieces, r.elements, r.motions);
+  }
+  return PW_OK;
+}
+
+pw_status pw_solid_check_report(pw_implicit *sim, FILE *out)
+{
+  const char *text;
   print_effects(sim, out);
   print_bodies(sim, out);
   print_sizes(sim, out);
-  print_estimate(sim, out);
+  const pw_status status = print_estimate(sim, out);
+  for (int i = 0; (text = pw_implicit_warning(sim, i)) != NULL; i++) {
+    fprintf(out, "warning: %s\n", text);
+  }
+  /* What holds the body tells more than a tangent that cannot be factored. */
+  if (status == PW_OK || status == PW_RETRY_DIVERGED) {
+    PW_TRY(print_mechanisms(sim, out));
+  }
+  return status;
 }

@@ -12,9 +12,11 @@
 
 /**
  * @brief Print effects, bodies, sizes of mesh and matrix, the solver, memory, and an estimate of
- *        the time, for which one assembly, factorisation and solution at the start are timed. No
- *        step is made.
+ *        the time, for which one assembly, factorisation and solution at the start are timed; then
+ *        warnings. No step is made.
+ * @return PW_OK; PW_RETRY_DIVERGED where the tangent cannot be factored, PW_ERR_SCENE for pieces
+ *         that nothing holds where those are errors, or what else would end the first step.
  */
-void pw_solid_check_report(pw_implicit *sim, FILE *out);
+pw_status pw_solid_check_report(pw_implicit *sim, FILE *out);
 
 #endif /* PW_IO_SOLID_CHECK_H */

@@ -55,6 +55,13 @@ static bool is_geometry(const char *file)
   return dot && strcmp(dot, ".geo") == 0;
 }
 
+const char *pw_solid_mesh_geometry(const pw_scene *scene)
+{
+  const pw_scene_mesh *m = &scene->solid.mesh;
+  const bool made = scene->geometry == PW_SOLID && m->kind != PW_MESH_BOX && is_geometry(m->file);
+  return made ? m->file : NULL;
+}
+
 static pw_status load_file(const pw_scene_mesh *m, pw_solid_mesh *out)
 {
   pw_gmsh_mesh file = {.ngroup = 0};

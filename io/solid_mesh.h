@@ -15,4 +15,8 @@
  */
 pw_status pw_solid_mesh_load(const pw_scene *scene, pw_solid_mesh *out);
 
+/** @brief The geometry that gmsh is going to mesh for the scene, which may take long. @return its
+ *  name, borrowed; NULL where there is none. */
+const char *pw_solid_mesh_geometry(const pw_scene *scene);
+
 #endif /* PW_IO_SOLID_MESH_H */

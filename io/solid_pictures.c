@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "engine/core/mem.h"
+#include "io/output_times.h"
 #include "io/pictures_plot.h"
 #include "io/pictures_series.h"
 
@@ -200,7 +201,9 @@ static pw_status draw(cut *c, const char *folder, const quantity *what)
   pw_plot plot = {.script = NULL};
   c->what = what;
   find_values(c);
-  snprintf(name, sizeof name, "%s_t%06.3fs.png", what->file, pw_implicit_time(c->sim));
+  const int decimals = pw_picture_decimals(pw_implicit_scene(c->sim));
+  snprintf(name, sizeof name, "%s_t%0*.*fs.png", what->file, decimals + 3, decimals,
+           pw_implicit_time(c->sim));
   pw_series_picture p = {.own = {c->range[0], c->range[1]}, .width = c->width, .height = c->height};
   snprintf(p.quantity, sizeof p.quantity, "%s", what->file);
   snprintf(p.unit, sizeof p.unit, "stress");

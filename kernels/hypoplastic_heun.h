@@ -4,9 +4,9 @@
  * @brief A small increment as one step of Heun's method instead of three stages (layer 1).
  *
  * y1 = y0 + (k1 + k2)/2 with k1 = f(y0), k2 = f(y0 + k1); the error of the Euler step, |k2 - k1|/2,
- * is its estimate. The powers in k2 follow from those in k1, so that the step costs little more than
- * one evaluation of the rates. It is of second order, and its own error a fraction of the estimate
- * of the order of |dE|/R.
+ * is its estimate. The step is of second order: its own error is smaller by |dE|/R. The powers of
+ * pressure and density in k2 follow from those in k1. Without intergranular strain the rates vary so
+ * little that three stages are nearly exact, and no other step is offered.
  */
 #ifndef PW_KERNELS_HYPOPLASTIC_HEUN_H
 #define PW_KERNELS_HYPOPLASTIC_HEUN_H
@@ -54,8 +54,8 @@ PW_INLINE void pw_hypo_heun_end(const pw_hypo *h, pw_t6 stress, pw_t6 delta,
 }
 
 /** @brief One step over an increment, with intergranular strain.
- *  @param[in] stress,delta sigma* (Pa) and the intergranular strain at its start
- *  @param[in] form         as in pw_hypo_slope_of() */
+ *  @param[in] stress sigma* at its start; Pa; delta: the intergranular strain there
+ *  @param[in] form   as in pw_hypo_slope_of() */
 PW_INLINE pw_hypo_heun pw_hypo_heun_step(const pw_hypo *h, pw_t6 stress, pw_t6 delta,
                                          pw_hypo_increment whole, int form)
 {

@@ -90,8 +90,10 @@ typedef struct active {
   pw_real stress[3];
 } active;
 
-/** Stress on the planes of a set; false when a multiplier is negative or a plane is exceeded. */
-static bool try_set(const plane *p, unsigned set, const pw_real *trial, pw_real size, active *s)
+/** Stress on the planes of a set; false when a multiplier is negative or a plane is exceeded by
+ *  more than @p margin[0] and [1]; Pa. */
+static bool try_set(const plane *p, unsigned set, const pw_real *trial, const pw_real *margin,
+                    active *s)
 {
   pw_real a[3][6];
   s->n = 0;
@@ -119,13 +121,13 @@ static bool try_set(const plane *p, unsigned set, const pw_real *trial, pw_real 
       lambda += s->inverse[j][i] * (dot(pi->n, trial) - pi->limit);
     }
     pw_real moved = fabs(pj->c_flow[0]) + fabs(pj->c_flow[1]) + fabs(pj->c_flow[2]);
-    valid = valid && lambda * moved >= -1e-13 * size;
+    valid = valid && lambda * moved >= -margin[0];
     for (int c = 0; c < 3; c++) {
       s->stress[c] -= lambda * pj->c_flow[c];
     }
   }
   for (int k = 0; k < PLANES; k++) {
-    valid = valid && dot(p[k].n, s->stress) - p[k].limit <= 1e-12 * size;
+    valid = valid && dot(p[k].n, s->stress) - p[k].limit <= margin[1];
   }
   return valid;
 }
@@ -151,6 +153,26 @@ static void set_tangent(const pw_mc *m, const plane *p, const active *s, pw_real
   }
 }
 
+/** Round-off of the return, as parts of the stress. The later pairs are for the few trial stresses
+ *  that the first leaves without a set: the planes of an edge are nearly parallel in the metric of
+ *  a nearly incompressible stiffness, or of a large friction angle. */
+static const pw_real slack[][2] = {{1e-13, 1e-12}, {1e-8, 1e-8}, {1e-6, 1e-6}};
+enum { TRIES = sizeof sets * sizeof slack / sizeof slack[0] };
+
+/** Whether the return is to equal stresses @p top: then the elastic strain of the trial stress beyond
+ *  them (here times 2 G) is a sum of flows of the planes that meet there. With (1 + sin psi, sin psi
+ *  - 1) on any two axes and strains in order, these are two conditions. */
+static bool beyond_apex(const pw_mc *m, const pw_real *trial, pw_real top, bool cut)
+{
+  const pw_real sum = trial[0] + trial[1] + trial[2] - 3.0 * top;
+  const pw_real even = top + m->lambda / (3.0 * m->lambda + 2.0 * m->shear) * sum;
+  const pw_real e[3] = {trial[0] - even, trial[1] - even, trial[2] - even};
+  const pw_real less = 1.0 - m->sin_psi, more = 1.0 + m->sin_psi;
+  return cut ? e[2] >= 0.0
+             : less * (e[0] + e[1]) + more * e[2] >= 0.0 &&
+                   less * e[0] + more * (e[1] + e[2]) >= 0.0;
+}
+
 bool pw_mc_return(const pw_mc *m, const pw_real *trial, pw_real *stress, pw_real *tangent)
 {
   plane p[PLANES];
@@ -162,12 +184,16 @@ bool pw_mc_return(const pw_mc *m, const pw_real *trial, pw_real *stress, pw_real
        done = false;
   pw_real size = fabs(trial[0]) + fabs(trial[2]) + m->strength;
   memcpy(s.stress, trial, sizeof s.stress);
-  for (size_t k = 0; outside && !done && k < sizeof sets; k++) {
-    if (cut || !(sets[k] & ~(unsigned)BY_SHEAR)) {
-      done = try_set(p, sets[k], trial, size, &s);
-    }
-  }
   const pw_real top = pw_min(apex, m->tension);
+  bool at_apex = false;
+  for (size_t k = 0; outside && !done && !at_apex && k < TRIES; k++) {
+    const unsigned set = sets[k % sizeof sets];
+    const pw_real *part = slack[k / sizeof sets], margin[2] = {part[0] * size, part[1] * size};
+    if (cut || !(set & ~(unsigned)BY_SHEAR)) {
+      done = try_set(p, set, trial, margin, &s);
+    }
+    at_apex = k + 1 == sizeof sets && top < PW_HUGE && beyond_apex(m, trial, top, cut);
+  }
   if (outside && !done && top < PW_HUGE) { /* no set of planes: the apex */
     s.n = 3;
     s.stress[0] = s.stress[1] = s.stress[2] = top;

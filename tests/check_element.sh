@@ -111,6 +111,11 @@ expect_text strong/element.csv '^1,4,'
 sed 's/path.csv/nowhere.csv/' "$cases/mohr_coulomb_mixed.yaml" >path.yaml
 expect_exit 2 "$program" element path.yaml
 expect_text stderr 'nowhere.csv'
+echo '# nothing' >empty.yaml
+expect_exit 2 "$program" element empty.yaml
+expect_text stderr 'the file is empty: a test needs at least materials, element and stages'
+echo >file
+expect_exit 3 "$program" element "$cases/mohr_coulomb_mixed.yaml" --out file/below
 expect_exit 1 "$program" element
 expect_exit 1 "$program" element odd.yaml --colour
 expect_exit 0 "$program" element --keys

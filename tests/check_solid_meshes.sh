@@ -112,5 +112,39 @@ echo 'DefineConstant[ n = {1} ]; SetFactory("OpenCASCADE"); Box(1) = {0, 0, 0, 1
 Physical Volume("soil") = {1}; Physical Surface("base") = {5};' >box.geo
 expect_exit 0 "$program" check good.yaml --set mesh.file=box.geo --set mesh.numbers=n=3
 expect_text stdout 'to \(1, 1, 3\) m'
+expect_text stderr '^meshing .*box.geo'
 expect_bad 'mesh.numbers: ' good.yaml --set mesh.file=box.geo --set mesh.numbers=n
+expect_bad "mesh.numbers: the name 'nn' does not occur in .*box.geo" good.yaml \
+  --set mesh.file=box.geo --set mesh.numbers=nn=3
+
+# gmsh keeps to one thread, the run does not.
+for file in good.msh box.geo; do
+  expect_exit 0 env OMP_NUM_THREADS=2 "$program" check good.yaml --set mesh.file=$file
+  expect_text stdout '^threads +2$'
+done
+
+# Tetrahedra of two orders in one volume, and of third order.
+tetrahedra() {
+  printf '$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$PhysicalNames\n1\n3 1 "soil"\n$EndPhysicalNames\n' >$1
+  printf '$Nodes\n%d\n' $(wc -l <<<"$2") >>$1
+  nl -w1 -s' ' <<<"$2" >>$1
+  printf '$EndNodes\n$Elements\n%d\n%s\n$EndElements\n' $(wc -l <<<"$3") "$3" >>$1
+}
+ten='0 0 0
+1 0 0
+0 1 0
+0 0 1
+.5 0 0
+.5 .5 0
+0 .5 0
+0 0 .5
+0 .5 .5
+.5 0 .5
+1 1 1'
+tetrahedra mixed.msh "$ten" '1 11 2 1 1 1 2 3 4 5 6 7 8 9 10
+2 4 2 1 1 2 3 4 11'
+expect_bad 'mixed.msh: linear and ten-node tetrahedra are mixed' good.yaml --set mesh.file=mixed.msh
+tetrahedra third.msh "$ten"$'\n2 2 2\n3 3 3\n4 4 4\n5 5 5\n6 6 6\n7 7 7\n8 8 8\n9 9 9\n1 2 3' \
+  "1 29 2 1 1 $(seq -s' ' 20)"
+expect_bad 'third.msh: tetrahedra of third order' good.yaml --set mesh.file=third.msh
 done_checking

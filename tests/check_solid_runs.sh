@@ -33,6 +33,53 @@ expect_text stderr 'the last good checkpoint is failed/checkpoint.h5'
 expect_status failed failed
 expect_file failed/checkpoint.h5
 
+# Starting over removes what the run before has left.
+expect_exit 0 "$program" run "$block" --out whole --force --set output.paraview=false
+expect_absent whole/paraview/mesh_0001.vtu
+expect_absent whole/paraview/run.pvd
+
+# A column under a dead load is pressed by its weight out of the elements that are loaded.
+cat >dead.yaml <<'end'
+geometry: solid
+mesh: {kind: box, low_m: [0, 0, 0], high_m: [1, 1, 1], bricks: [1, 1, 4], cells: linear}
+implicit: {steps: 20, fbar: none, point_rule: four}
+materials:
+  soft: {model: hencky_von_mises, youngs_modulus_pa: 1.0e5, poisson_ratio: 0.0,
+         density_kg_m3: 1000, undrained_shear_strength_pa: 1.0e9}
+bodies:
+  block: {material: soft}
+boundary:
+  - {low_m: [0, 0, 0], high_m: [1, 1, 1], fix_x: true, fix_y: true}
+  - {group: z_min, fix_z: true}
+traction:
+  - {group: z_max, kind: pressure, pressure_pa: 4.0e4}
+output: {pictures: false, paraview: false, picture_steps: [30]}
+end
+expect_exit 3 "$program" run dead.yaml --out dead
+expect_text stderr '[0-9] of [0-9.e+]+ N of load act on nodes without points'
+expect_exit 0 "$program" run dead.yaml --out follows --set traction.0.follower=true \
+  --set implicit.steps=4 --set output.pictures=true
+expect_text stdout '^warning: no picture at 30 s: the run ends at 4 s'
+expect_text follows/summary.json 'no picture at 30 s'
+
+# A wall that goes further than an element on a mesh that stays.
+wall='--set implicit.steps=2 --set traction.0.pressure_pa=0 --set boundary.1.displacement_m=[0,0,-0.3]'
+expect_exit 0 "$program" check dead.yaml $wall
+expect_text stdout '^warning: boundary.1.displacement_m: 0.3 m along z on a mesh that stays'
+expect_exit 0 "$program" check dead.yaml $wall --set 'moving_mesh={with: stretch, stretch_end: [1, 1, 0.7]}'
+grep -q 'mesh that stays' stdout && fail "a warning of a mesh that stays although it moves"
+
+# A body that nothing holds is told of, whether or not its steps converge.
+sed '/^boundary/,/^traction/{/^traction/!d}' dead.yaml >free.yaml
+expect_exit 3 "$program" run free.yaml --out free --set implicit.max_cuts=1
+expect_text stderr '^warning: step 1: 1 of 1 pieces of the body, 24 elements, are held by nothing'
+expect_text free/summary.json '1 of 1 pieces of the body'
+expect_exit 0 "$program" check free.yaml
+expect_text stdout '^warning: 1 of 1 pieces of the body'
+expect_exit 2 "$program" check free.yaml --set implicit.mechanisms=error
+expect_text stderr 'implicit.mechanisms: 1 of 1 pieces'
+grep -q 'can be run' stdout && fail "a body that nothing holds can be run"
+
 # Interrupted and killed, on a mesh file when there is gmsh.
 scene=$vane
 grep -q '^GMSH_LIBRARY:FILEPATH=.*NOTFOUND' "$build/CMakeCache.txt" && scene=$block

@@ -35,6 +35,12 @@ expect_exit 1 "$program" run "$scene" --out
 expect_text stderr 'value is missing'
 expect_exit 1 "$program" check "$scene" --force
 expect_text stderr 'not an option of this command'
+expect_exit 1 "$program" check "$scene" --out x
+expect_text stderr 'not an option of this command: --out$'
+for command in run element; do
+  expect_exit 1 "$program" $command -xy "$scene"
+  expect_text stderr 'unknown option -x$'
+done
 expect_exit 1 "$program" keys everything
 expect_exit 1 "$program" run "$scene" --resume --force
 for threads in 0 -1 two 1.5 '' 99999999999999999999; do

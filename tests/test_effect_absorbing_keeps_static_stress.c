@@ -106,6 +106,37 @@ static void box_at_rest_stays(void **state)
   }
 }
 
+/* The corner node of two sides belongs to both, whichever way they are held before their start,
+ * and over whatever time each takes its mean: its reaction is carried on once. */
+static void corners_are_carried_once(void **state)
+{
+  (void)state;
+  static pw_scene s;
+  for (int k = 0; k < 16; k++) {
+    pw_scene_default(&s);
+    test_grid(&s, (pw_real[]){0.0, 2.0, 0.0, 2.5}, 0.25);
+    test_rectangle(&s, test_soil(&s), (pw_real[]){0.0, 2.0, 0.0, 2.0}, 0.125);
+    pw_initial_stress_param *i = pw_scene_add_effect(&s, "initial_stress");
+    i->body = 0;
+    i->top_y_m = 2.0;
+    i->k0 = 0.5;
+    test_gravity(&s, 0.0)->acceleration_m_s2 = 10.0;
+    test_roller(&s, PW_SIDE_LEFT);
+    for (int side = 0; side < 2; side++) { /* let go together, or the first one later */
+      pw_absorbing_param *a = test_absorbing(&s, side == 0 ? PW_SIDE_RIGHT : PW_SIDE_BOTTOM);
+      a->start_s = side == 0 && k & 8 ? 0.03 : 0.02;
+      a->before = side == 1 || k & 1 ? PW_BEFORE_FIXED : PW_BEFORE_ROLLER;
+      a->mean_over_s = k & (side == 0 ? 2 : 4) ? 0.01 : 0.0;
+    }
+    pw_sim *sim = test_sim(&s, 1);
+    test_run_to(sim, 0.1);
+    assert_true(result(sim, "absorbing_0_moved_max_m") < 1e-12);
+    assert_true(result(sim, "absorbing_1_moved_max_m") < 1e-12);
+    assert_true(test_fastest(sim) < 1e-9);
+    pw_sim_destroy(&sim);
+  }
+}
+
 /* Gravity grows under local damping while the side is held, then it is let go. */
 static void held_until_its_start(void **state)
 {
@@ -300,6 +331,7 @@ int main(void)
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(soil_at_rest_stays),
       cmocka_unit_test(box_at_rest_stays),
+      cmocka_unit_test(corners_are_carried_once),
       cmocka_unit_test(held_until_its_start),
       cmocka_unit_test(pulse_moves_it_by_its_impulse),
       cmocka_unit_test(lasting_load_rests_on_the_springs),

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Local damping changes accelerations by its coefficient; a given motion is followed exactly and
- * its driving force balances weight and inertia. */
+ * its driving force balances weight and inertia. The watch over the balance of energy lets a wall
+ * move into soil at rest, and stress be let go, but not a step beyond the stability limit. */
 #include "engine/effects/params.h"
 #include "tests/engine_helpers.h"
 
@@ -139,6 +140,91 @@ static void given_motion_needs_its_own_field(void **state)
   assert_int_equal(type->check(&scene, m), PW_ERR_SCENE);
 }
 
+/* Elastic soil between rollers, the right one of which moves into it from the start. */
+static void moving_wall(pw_scene *scene, int update)
+{
+  pw_scene_default(scene);
+  scene->time.cfl = 0.5;
+  scene->method.update = update;
+  test_grid(scene, (pw_real[4]){0.0, 1.0, 0.0, 1.5}, 0.1);
+  int m = test_elastic(scene, 1e7, 0.3, 2000.0);
+  test_rectangle(scene, m, (pw_real[4]){0.0, 1.0, 0.0, 1.0}, 0.05);
+  const int side[3] = {PW_SIDE_LEFT, PW_SIDE_BOTTOM, PW_SIDE_RIGHT};
+  for (int k = 0; k < 3; k++) {
+    pw_boundary_param *b = pw_scene_add_effect(scene, "boundary");
+    b->side = side[k];
+    b->fix_x = side[k] != PW_SIDE_BOTTOM;
+    b->fix_y = !b->fix_x;
+    b->velocity_x_m_s = side[k] == PW_SIDE_RIGHT ? -1.0 : 0.0;
+  }
+}
+
+/* A free block under 100 kPa from all sides. */
+static void stressed_block(pw_scene *scene, int update)
+{
+  pw_scene_default(scene);
+  scene->time.cfl = 0.5;
+  scene->method.update = update;
+  test_grid(scene, (pw_real[4]){0.0, 2.0, 0.0, 2.0}, 0.1);
+  int m = test_elastic(scene, 1e7, 0.3, 2000.0);
+  test_rectangle(scene, m, (pw_real[4]){0.5, 1.5, 0.5, 1.5}, 0.05);
+  pw_initial_stress_param *i = pw_scene_add_effect(scene, "initial_stress");
+  i->body = 0;
+  i->kind = PW_STRESS_UNIFORM;
+  i->stress_xx_pa = i->stress_yy_pa = i->stress_zz_pa = -1e5;
+}
+
+static void walls_may_move_and_stress_be_let_go(void **state)
+{
+  (void)state;
+  static pw_scene scene;
+  for (int update = PW_MUSL; update <= PW_USF; update++) {
+    moving_wall(&scene, update);
+    pw_sim *sim = test_sim(&scene, 1);
+    test_run_to(sim, 0.02);
+    pw_real taken = value_of(sim, "kinetic_j") + sim->energy.strain_work;
+    print_message("update %d: the wall works %.4g J, the soil takes %.4g J\n", update,
+                  sim->energy.external, taken);
+    assert_relative(taken, sim->energy.external, 0.1);
+    pw_sim_destroy(&sim);
+    /* What plane strain under s stores, (1 + nu) (1 - 2 nu) s^2 / E per volume, moves the block,
+     * but for what other parts of it hold at that time. */
+    const pw_real stored = 1.3 * 0.4 * 1e5 * 1e5 / 1e7;
+    stressed_block(&scene, update);
+    sim = test_sim(&scene, 1);
+    pw_real most = 0.0, kinetic = 0.0;
+    while (sim->time < 0.02) {
+      assert_ok(pw_sim_step(sim, 0.0));
+      most = pw_max(most, -sim->energy.strain_work);
+      kinetic = pw_max(kinetic, value_of(sim, "kinetic_j"));
+    }
+    print_message("update %d: stresses give up %.4g J of %.4g J, the block moves with %.4g J\n",
+                  update, most, stored, kinetic);
+    assert_true(most > 0.75 * stored && most < stored);
+    assert_true(kinetic > 0.75 * stored && kinetic < stored);
+    pw_sim_destroy(&sim);
+  }
+}
+
+static void steps_beyond_the_limit_are_stopped(void **state)
+{
+  (void)state;
+  static pw_scene scene;
+  for (int k = 0; k < 6; k++) {
+    (k % 2 == 0 ? moving_wall : stressed_block)(&scene, PW_MUSL + k / 2);
+    scene.time.dt_s = 2.5e-3; /* a wave takes 1.2e-3 s through a cell */
+    pw_sim *sim = test_sim(&scene, 1);
+    pw_status status = PW_OK;
+    while (status == PW_OK && sim->step < 1000) {
+      status = pw_sim_step(sim, 0.0);
+    }
+    print_message("%s: stopped at step %lld with %s\n", k % 2 == 0 ? "wall" : "block",
+                  (long long)sim->step, pw_error_text());
+    assert_int_equal(status, PW_RETRY_DIVERGED);
+    pw_sim_destroy(&sim);
+  }
+}
+
 int main(void)
 {
   const struct CMUnitTest tests[] = {
@@ -146,6 +232,8 @@ int main(void)
       cmocka_unit_test(damped_column_settles_with_its_energy_accounted_for),
       cmocka_unit_test(given_motion_is_followed_and_balanced),
       cmocka_unit_test(given_motion_needs_its_own_field),
+      cmocka_unit_test(walls_may_move_and_stress_be_let_go),
+      cmocka_unit_test(steps_beyond_the_limit_are_stopped),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

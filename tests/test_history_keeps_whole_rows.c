@@ -166,6 +166,22 @@ static void a_row_without_room_is_taken_back(void **unused)
   free(after.data);
 }
 
+/* What has no room is counted, so that a run can be refused before it loses columns. */
+static void puts_without_room_are_counted(void **unused)
+{
+  (void)unused;
+  pw_record r = row(0.0, 0, 0.0);
+  assert_int_equal(r.asked, 3);
+  for (int k = 3; k < PW_RECORD_MAX + 7; k++) {
+    pw_record_put(&r, "load_n", k);
+  }
+  assert_int_equal(r.n, PW_RECORD_MAX);
+  assert_int_equal(r.asked, PW_RECORD_MAX + 7);
+  r.n = 0;
+  pw_record_put(&r, "load_n", 1.0);
+  assert_int_equal(r.asked, 1);
+}
+
 #define TEST(name) cmocka_unit_test_setup_teardown(name, set_up, tear_down)
 
 int main(void)
@@ -178,6 +194,7 @@ int main(void)
       TEST(resuming_without_a_file_starts_one),
       TEST(other_columns_are_refused),
       TEST(a_row_without_room_is_taken_back),
+      TEST(puts_without_room_are_counted),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -39,6 +39,28 @@ static void footing_bears_its_limit(void **state)
   pw_implicit_destroy(&sim);
 }
 
+/* One width in 150 steps, the first tenth of it, on a mesh of half as many elements: the resistance only
+ * rises, and is within 5 % of the case's own mesh (5.11). */
+static void deep_footing_meets_more_and_more(void **state)
+{
+  (void)state;
+  const char *const set[] = {"implicit.steps=150", "mesh.numbers=under=3 beside=7 down=6 up=5"};
+  double before = 0.0;
+  if (!pw_gmsh_available()) {
+    skip();
+  }
+  pw_implicit *sim = test_implicit_case("footing/deep.yaml", 2, set);
+  for (int k = 1; k <= 15; k++) {
+    assert_ok(pw_implicit_step(sim));
+    const double now = -test_implicit_history(sim, "boundary_0_force_y_n") / (0.5 * 0.25);
+    assert_true(now > before && pw_implicit_newton(sim)->cuts == 0);
+    before = now;
+  }
+  print_message("%.3f c_u at a tenth of the width\n", before);
+  assert_relative(before, 5.11, 0.05);
+  pw_implicit_destroy(&sim);
+}
+
 /* Plastic to 0.18 m: u_b = 0.194544 mm (Hill). */
 static void thick_cylinder_widens_as_hill_says(void **state)
 {
@@ -88,6 +110,7 @@ int main(void)
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(cooks_membrane_bends_without_locking),
       cmocka_unit_test(footing_bears_its_limit),
+      cmocka_unit_test(deep_footing_meets_more_and_more),
       cmocka_unit_test(thick_cylinder_widens_as_hill_says),
       cmocka_unit_test(rubber_tube_opens_as_ogden_says),
       cmocka_unit_test(column_rests_on_its_base),

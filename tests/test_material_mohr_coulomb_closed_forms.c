@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Mohr-Coulomb and Tresca: triaxial and plane limits, flow, cavity pressure, tension cut-off, the
- * return as a projection, yield, dissipation, tangents in every region, rotation, batches. */
+ * return as a projection, round-off, yield, dissipation, tangents in every region, rotation,
+ * batches. */
 #include "kernels/mohr_coulomb.h"
 #include "tests/material_batch.h"
 
@@ -160,6 +161,47 @@ static void tension_is_cut_off(void **unused)
 
 /** Associated flow: the return is the projection in the energy norm, so that
  *  (trial - s).C^-1.(y - s) <= 0 for every admissible y. Independent of how it is computed. */
+/* Plastic flow of dilation psi >= 0 never lowers the mean stress that it takes off: a trial stress
+ * with less than the mean stress of the apex does not return there, however stiff in volume and
+ * steep the cone. Two equal trial stresses stay equal: the edge is where round-off decides. */
+static void round_off_does_not_lead_to_the_apex(void **unused)
+{
+  (void)unused;
+  uint64_t seed = 23;
+  const double poisson[4] = {0.3, 0.49, 0.4999, 0.49999}, angle[4] = {30, 45, 60, 75};
+  double furthest = 0.0;
+  for (int k = 0; k < 64; k++) {
+    const double nu = poisson[k % 4], phi = angle[k / 4 % 4] * RADIANS, psi = k / 16 * phi / 3.0;
+    const double shear = 5e6 / (1.0 + nu), cohesion = 1e4, apex = cohesion / tan(phi);
+    const pw_mc m = {.lambda = 2.0 * shear * nu / (1.0 - 2.0 * nu),
+                     .shear = shear,
+                     .sin_phi = sin(phi),
+                     .sin_psi = sin(psi),
+                     .strength = 2.0 * cohesion * cos(phi),
+                     .tension = PW_HUGE};
+    for (int trial = 0; trial < 10000; trial++) {
+      const double size = pow(10.0, 2.0 + 4.0 * test_random(&seed));
+      const double gap = size * test_random(&seed), mean = -size * test_random(&seed);
+      pw_real t[3] = {mean + gap, mean - 0.5 * gap, mean - 0.5 * gap}, s[3];
+      if (trial % 2 == 1) { /* the other edge */
+        t[0] = t[1] = mean + 0.5 * gap;
+        t[2] = mean - gap;
+      }
+      if (!pw_mc_return(&m, t, s, NULL)) {
+        continue;
+      }
+      const int twin = trial % 2 == 1 ? 0 : 2;
+      const double total = fabs(t[0]) + fabs(t[2]) + m.strength;
+      const double f = s[0] - s[2] + (s[0] + s[2]) * m.sin_phi - m.strength;
+      furthest = fmax(furthest, fmax(fabs(f), fabs(s[1] - s[twin])) / total);
+      assert_true(s[0] + s[1] + s[2] <= t[0] + t[1] + t[2] + 3e-6 * total);
+      assert_true(s[2] < apex || t[0] + t[1] + t[2] > 3.0 * apex - 3e-6 * total);
+    }
+  }
+  print_message("off the edge by at most %.1e of the stress\n", furthest);
+  assert_true(furthest < 1e-6);
+}
+
 static void associated_return_is_the_projection(void **unused)
 {
   (void)unused;
@@ -334,6 +376,7 @@ int main(void)
                                      cmocka_unit_test(simple_shear),
                                      cmocka_unit_test(tension_is_cut_off),
                                      cmocka_unit_test(associated_return_is_the_projection),
+                                     cmocka_unit_test(round_off_does_not_lead_to_the_apex),
                                      cmocka_unit_test(yield_and_dissipation),
                                      cmocka_unit_test(tangents_are_derivatives),
                                      cmocka_unit_test(rotation_keeps_the_invariants),

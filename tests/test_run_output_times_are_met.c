@@ -117,6 +117,33 @@ static void test_switching_pictures_off_keeps_the_steps(void **state)
   assert_false(pw_output_due(&off, 0.11, 0.123).picture);
 }
 
+static void test_picture_names_differ(void **state)
+{
+  (void)state;
+  const struct {
+    pw_real end;
+    pw_reals times;
+    int steps, decimals;
+  } with[] = {
+      {2.0, {2, {0.5, 1.0}}, 0, 3},
+      {0.004, {3, {0.001, 0.002, 0.003}}, 0, 3},
+      {2.0, {2, {1.0, 2.0}}, 0, 3}, /* the end once more */
+      {0.001, {3, {0.0, 0.0005, 0.00075}}, 0, 4},
+      {0.02, {2, {0.0035, 0.0045}}, 0, 4}, /* 0.004 both, by the binary numbers */
+      {1.0, {2, {2e-7, 5e-7}}, 0, 7},
+      {0.001, {0}, 10, 3},
+      {0.01, {2, {0.0014, 0.0016}}, 5, 3}, /* drawn at the ends of steps of 2 ms */
+      {0.001, {2, {0.0002, 0.0004}}, 10, 4},
+  };
+  for (size_t k = 0; k < sizeof with / sizeof with[0]; k++) {
+    pw_scene scene = scene_with(with[k].end, 0.0, 0.0);
+    scene.output.picture_times_s = with[k].times;
+    scene.solid.implicit.steps = with[k].steps;
+    scene.method.update = with[k].steps > 0 ? PW_IMPLICIT : PW_MUSL;
+    assert_int_equal(pw_picture_decimals(&scene), with[k].decimals);
+  }
+}
+
 int main(void)
 {
   const struct CMUnitTest tests[] = {
@@ -124,6 +151,7 @@ int main(void)
       cmocka_unit_test(test_period_zero),
       cmocka_unit_test(test_fixed_steps_are_not_cut),
       cmocka_unit_test(test_switching_pictures_off_keeps_the_steps),
+      cmocka_unit_test(test_picture_names_differ),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

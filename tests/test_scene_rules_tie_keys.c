@@ -168,6 +168,21 @@ static void sizes_of_points_are_sound(void **state)
   expect_rule("bodies.left: refine: x_m and y_m of entry 0 must be written [smaller, larger]");
 }
 
+static void limits_of_domains_and_tilt_make_sense(void **state)
+{
+  (void)state;
+  s.method.domain_aspect_max = 0.5;
+  expect_rule("method: domain_aspect_max = 0.5: longest to shortest half-side, 1 at least");
+  s.method.domain_aspect_max = 1;
+  pw_gravity_param *g = pw_scene_add_effect(&s, "gravity");
+  g->tilt_deg = -10;
+  assert_ok(pw_scene_check(&s));
+  s.geometry = PW_AXI;
+  expect_rule("gravity: tilt_deg = -10: in axisymmetry gravity acts along the axis");
+  g->tilt_deg = 0;
+  assert_ok(pw_scene_check(&s));
+}
+
 static void materials_check_themselves(void **state)
 {
   (void)state;
@@ -252,6 +267,7 @@ int main(void)
       RULE(bodies_lie_in_the_grid),
       RULE(shapes_are_sound),
       RULE(sizes_of_points_are_sound),
+      RULE(limits_of_domains_and_tilt_make_sense),
       RULE(materials_check_themselves),
       RULE(effects_are_given_once),
       RULE(references_of_effects_exist),

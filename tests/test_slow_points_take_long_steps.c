@@ -176,6 +176,44 @@ static void same_bits_on_any_number_of_threads(void **state)
   pw_sim_destroy(&one);
 }
 
+/* Written as it is now, a checkpoint is refused. */
+static void expect_damaged(const char *file, pw_sim *sim, const char *text)
+{
+  assert_ok(pw_restart_write(file, sim));
+  assert_int_equal(pw_restart_read(file, sim), PW_ERR_FILE);
+  assert_error_says(text);
+}
+
+static void damaged_checkpoints_are_refused(void **state)
+{
+  (void)state;
+  static pw_scene s;
+  bar(&s, RATIO);
+  const char *folder = test_folder(), *file = test_path(folder, "damaged.h5");
+  pw_sim *sim = test_sim(&s, 1);
+  assert_ok(pw_sim_step(sim, 0.0));
+  assert_ok(pw_restart_write(file, sim));
+  assert_ok(pw_restart_read(file, sim));
+  const pw_idx first = sim->rates->first, level = sim->rates->level[1];
+  sim->rates->first = 5;
+  expect_damaged(file, sim, "steps of blocks are damaged");
+  sim->rates->first = first;
+  const pw_idx wrong[2] = {-1, sim->rates->levels + 1};
+  for (int k = 0; k < 2; k++) {
+    sim->rates->level[1] = wrong[k];
+    expect_damaged(file, sim, "steps of blocks are damaged");
+  }
+  sim->rates->level[1] = level;
+  const pw_idx last = sim->points.n - 1, home = sim->points.home[last];
+  sim->points.home[last] = sim->points.home[0]; /* of another block */
+  expect_damaged(file, sim, "another METIS");
+  sim->points.home[last] = home;
+  assert_ok(pw_restart_write(file, sim));
+  assert_ok(pw_restart_read(file, sim));
+  pw_sim_destroy(&sim);
+  test_remove_folder(folder);
+}
+
 static void a_restart_continues(void **state)
 {
   (void)state;
@@ -235,6 +273,7 @@ int main(void)
       cmocka_unit_test(energy_is_not_more_than_with_short_steps),
       cmocka_unit_test(same_bits_on_any_number_of_threads),
       cmocka_unit_test(a_restart_continues),
+      cmocka_unit_test(damaged_checkpoints_are_refused),
       cmocka_unit_test(rest_stays_rest),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);

@@ -279,6 +279,36 @@ static void large_systems_are_iterated(void **state)
   end(&e);
 }
 
+/* From one load step to the next nodes gain and lose their equations. */
+static void patterns_may_change(void **state)
+{
+  (void)state;
+  static elastic e;
+  for (int fbar = PW_FBAR_NONE; fbar <= PW_FBAR_INCREMENT; fbar++) {
+    for (int engine = PW_SOLVER_AUTO; engine < PW_SOLVER_ENGINES; engine++) {
+      start(&e, (pw_fbar)fbar, true);
+      const pw_idx n = e.mesh.tets.nnode, all = e.model.csr.n;
+      pw_solver *s = make((pw_solver_engine)engine, fbar == PW_FBAR_NONE, &e);
+      for (int step = 0; s && step < 4; step++) {
+        for (pw_idx a = 0; a < n; a++) { /* a plane of nodes more, on and off */
+          e.model.fixed[2 * n + a] = e.mesh.x[a] == 0.0 || e.mesh.x[n + a] == 0.0 ||
+                                     (step % 2 == 1 && e.mesh.x[2 * n + a] == 0.0);
+        }
+        assert_ok(pw_tet_model_begin(&e.model));
+        deform(&e, 0.01 * step);
+        assert_true(step % 2 == 1 ? e.model.csr.n < all : e.model.csr.n == all);
+        pw_solver_forget(s);
+        pw_solver_aim(s, 1e-10);
+        assert_ok(pw_solver_factor(s, &e.model.csr));
+        assert_ok(pw_solver_solve(s, &e.model.csr, e.b, e.x));
+        assert_true(left_over(&e) <= 1.01e-10);
+      }
+      pw_solver_destroy(&s);
+      end(&e);
+    }
+  }
+}
+
 /* The same matrices in the same order: the same bits. */
 static void runs_repeat(void **state)
 {
@@ -314,6 +344,7 @@ int main(void)
       cmocka_unit_test(memory_is_looked_at_first),
       cmocka_unit_test(engines_have_names),
       cmocka_unit_test(large_systems_are_iterated),
+      cmocka_unit_test(patterns_may_change),
       cmocka_unit_test(runs_repeat),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);

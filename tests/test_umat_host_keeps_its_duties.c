@@ -46,6 +46,43 @@ static void strains_come_in_order_with_engineering_shears(void **state)
   assert_near(statev(&el)[23], 80.5, 0.0); /* length of CMNAME, its text and blanks */
 }
 
+/* Points that take long steps are told when those begin, whether they end with a cycle or are
+ * ended early, because points change blocks. */
+static void long_steps_begin_at_their_time(void **state)
+{
+  (void)state;
+  static pw_scene s;
+  pw_scene_default(&s);
+  s.method.block_elements = 8;
+  s.method.step_ratio_max = 4;
+  s.time.cfl = 0.5;
+  test_grid(&s, (pw_real[]){0.0, 2.0, 0.0, 0.1}, 0.025);
+  s.material[s.nmaterial++] = spy(24);
+  const int stiff = test_elastic(&s, 4e8, 0.3, 1800.0);
+  test_rectangle(&s, stiff, (pw_real[]){0.4, 1.0, 0.0, 0.1}, 0.0125)->velocity_m_s[0] = -30.0;
+  test_rectangle(&s, 0, (pw_real[]){1.0, 1.8, 0.0, 0.1}, 0.0125);
+  pw_sim *sim = test_sim(&s, 1);
+  const pw_points *p = &sim->points;
+  int stretched = 0, joined = 0;
+  for (int k = 0; k < 90; k++) {
+    const pw_off before = sim->step;
+    assert_ok(pw_sim_step(sim, 0.0));
+    const bool early = sim->sort_needed && sim->step - before < 4;
+    for (pw_idx i = 0; i < p->n; i++) {
+      const pw_real *told = p->state + (pw_off)PW_UMAT_OWN * p->ld + i;
+      const pw_real dt = told[8 * p->ld];
+      if (p->body[i] == 1) {
+        assert_near(told[6 * p->ld] + dt, sim->time, 1e-14);
+        assert_near(told[7 * p->ld] + dt, sim->time, 1e-14);
+        stretched += dt > 3.5 * sim->dt;
+        joined += early && dt > 1.5 * sim->dt;
+      }
+    }
+  }
+  assert_true(stretched > 0 && joined > 0);
+  pw_sim_destroy(&sim);
+}
+
 static void rotation_and_gradients_belong_together(void **state)
 {
   (void)state;
@@ -185,6 +222,7 @@ int main(void)
 {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(strains_come_in_order_with_engineering_shears),
+      cmocka_unit_test(long_steps_begin_at_their_time),
       cmocka_unit_test(rotation_and_gradients_belong_together),
       cmocka_unit_test(turning_leaves_stress_and_listed_tensors),
       cmocka_unit_test(routines_may_spoil_their_arguments),

@@ -5,6 +5,7 @@
 
 static pw_record_item *append(pw_record *r, const char *name)
 {
+  r->asked = r->n == 0 ? 1 : r->asked + 1;
   if (r->n == PW_RECORD_MAX) {
     return NULL;
   }

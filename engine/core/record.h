@@ -11,7 +11,7 @@
 
 #include "engine/core/types.h"
 
-enum { PW_RECORD_MAX = 96, PW_RECORD_ARRAY = 128 };
+enum { PW_RECORD_MAX = 256, PW_RECORD_ARRAY = 128 };
 
 /** One named value; count > 1 or array == true marks a list (set_per_blow_m). */
 typedef struct pw_record_item {
@@ -23,10 +23,11 @@ typedef struct pw_record_item {
 
 typedef struct pw_record {
   int n;
+  int asked; /**< puts since n was 0, those with no room included */
   pw_record_item item[PW_RECORD_MAX];
 } pw_record;
 
-/** @brief Append @p name = @p value; ignored when the record is full. */
+/** @brief Append @p name = @p value; only counted when the record is full. */
 void pw_record_put(pw_record *r, const char *name, pw_real value);
 
 /** @brief Append a list; @p array is borrowed. */

@@ -203,13 +203,31 @@ static pw_real *record(const pw_sim *sim, const absorbing *c, pw_idx q)
   return pw_nodes_field(&sim->nodes, (int)(q / c->n)) + (pw_off)c->node[q % c->n] * PW_NODE;
 }
 
+/* Whether component a of a node, at a corner, is still held by an absorbing side before this one in
+ * the scene: that one sums its reaction. Once it is let go, its reaction is among the loads. */
+static bool held_before(const pw_sim *sim, const absorbing *c, pw_idx node, int a)
+{
+  const pw_idx *nodes = sim->mesh.nodes, at[2] = {node % nodes[0], node / nodes[0]};
+  for (int e = 0; sim->ctx[e] != c; e++) {
+    const absorbing *other = sim->ctx[e];
+    if (strcmp(sim->scene.effect[e].type->name, "absorbing") == 0 && !other->active &&
+        holds(other, a) &&
+        at[other->normal] == (other->inward < 0 ? nodes[other->normal] - 1 : 0)) {
+      return true;
+    }
+  }
+  return false;
+}
+
 /* Towards the mean reaction; the force slots hold internal forces and loads, no damping yet. */
 static void sum_reactions(const pw_sim *sim, absorbing *c, pw_real weight)
 {
   for (pw_idx q = 0; q < c->nq; q++) {
     const pw_real *r = record(sim, c, q);
     for (int a = 0; a < 2; a++) {
-      c->q[q].held[a] -= holds(c, a) ? weight * r[PW_NODE_FORCE + a] : 0.0;
+      if (holds(c, a) && !held_before(sim, c, c->node[q % c->n], a)) {
+        c->q[q].held[a] -= weight * r[PW_NODE_FORCE + a];
+      }
     }
   }
   c->held_time += weight;

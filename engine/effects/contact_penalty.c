@@ -190,6 +190,11 @@ static pw_status archive(pw_sim *sim, void *ctx, pw_archive *ar)
   PW_TRY(pw_contact_tally_archive(&c->tally, "contact_penalty/reaction", ar));
   PW_TRY(pw_interface_archive(&c->slave, "contact_penalty/slave", ar));
   PW_TRY(pw_interface_archive(&c->master, "contact_penalty/master", ar));
+  for (pw_idx k = 0; ar->loading && k < c->slave.n; k++) {
+    const pw_idx owner = c->slave.node[k].touch.owner;
+    PW_REQUIRE(owner >= -1 && owner < pw_interface_segments(&c->master), PW_ERR_FILE,
+               "the checkpoint's contacts of contact_penalty are damaged");
+  }
   PW_TRY(ar->offset(ar, "contact_penalty/counts", count, 5));
   c->counts = (pw_refine_counts){count[0], count[1], count[2], 0.0};
   c->reduced = count[3];

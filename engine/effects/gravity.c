@@ -29,6 +29,14 @@ typedef struct gravity {
   pw_real *part;     /* scratch of sums */
 } gravity;
 
+static pw_status check(const pw_scene *scene, const void *param)
+{
+  const pw_gravity_param *p = param;
+  PW_REQUIRE(scene->geometry != PW_AXI || !(fabs(p->tilt_deg) > 0.0), PW_ERR_SCENE,
+             "tilt_deg = %g: in axisymmetry gravity acts along the axis", p->tilt_deg);
+  return PW_OK;
+}
+
 /* Explicit: mean over the step of the acceleration, so that ramp and turn do not depend on the
  * steps. */
 static void set_acceleration(pw_sim *sim, gravity *c)
@@ -156,6 +164,7 @@ const pw_effect pw_effect_gravity = {
     .keys = keys,
     .hooks = hooks,
     .implicit = hooks,
+    .check = check,
     .create = create,
     .destroy = destroy,
 };

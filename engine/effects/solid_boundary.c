@@ -7,6 +7,7 @@
  */
 #include "engine/effects/solid_params.h"
 
+#include <math.h>
 #include <stdio.h>
 
 #include "engine/core/mem.h"
@@ -23,7 +24,8 @@ static const pw_key keys[] = {
   {"fix_z", PW_KEY_BOOL, AT(fix[2]), 0, 0, "false", NULL, NULL,
    "hold the displacement along z"},
   {"displacement_m", PW_KEY_TRIPLE, AT(displacement_m), -1e6, 1e6, "[0, 0, 0]", NULL, NULL,
-   "whole displacement of the held components, reached at the end of the ramp"},
+   "whole displacement of the held components, reached at the end of the ramp; without moving_mesh "
+   "less than an element, or the body leaves the nodes"},
   PW_SOLID_RAMP_KEYS(AT(ramp)),
   {0}};
 /* clang-format on */
@@ -52,6 +54,40 @@ static pw_status check(const pw_scene *scene, const void *param)
   return pw_solid_nodes_check(&p->nodes);
 }
 
+/* Largest extent along c of the elements at the nodes. */
+static pw_real element_size(const pw_implicit *sim, const boundary *b, int c)
+{
+  const pw_tets *t = &sim->mesh.tets;
+  const pw_real *x = sim->mesh.x + (pw_off)c * t->nnode;
+  pw_real most = 0.0;
+  for (pw_idx i = 0; i < b->n; i++) {
+    for (pw_idx k = t->node_start[b->node[i]]; k < t->node_start[b->node[i] + 1]; k++) {
+      const pw_idx *node = t->node + 4 * (pw_off)t->node_elem[k];
+      for (int a = 0; a < 4; a++) {
+        most = pw_max(most, fabs(x[node[a]] - x[b->node[i]]));
+      }
+    }
+  }
+  return most;
+}
+
+/* Nodes that go back after every step lose the body they push or pull. */
+static void note_leaving(pw_implicit *sim, const boundary *b)
+{
+  const bool stays = !pw_scene_find_effect(&sim->scene, "moving_mesh");
+  for (int c = 0; c < 3 && stays && !sim->note[0]; c++) {
+    const pw_real far = fabs(b->param->displacement_m[c]);
+    const pw_real size = far > 0.0 ? element_size(sim, b, c) : 0.0;
+    if (far > size) {
+      snprintf(
+          sim->note, sizeof sim->note,
+          "boundary.%d.displacement_m: %g m along %c on a mesh that stays, with elements of %g "
+          "m: the body leaves the nodes that move it; moving_mesh takes the mesh along",
+          b->number, far, "xyz"[c], size);
+    }
+  }
+}
+
 static pw_status create(pw_implicit *sim, const pw_solid_mesh *mesh, const void *param, void **ctx)
 {
   boundary *b;
@@ -73,6 +109,7 @@ static pw_status create(pw_implicit *sim, const pw_solid_mesh *mesh, const void 
       }
     }
   }
+  note_leaving(sim, b);
   return PW_OK;
 }
 

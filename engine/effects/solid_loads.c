@@ -2,7 +2,9 @@
 /* Loads: tractions on surfaces of the mesh, and gravity.
  *
  * Tractions act on the surface where the mesh has it at the start; they keep their direction (dead
- * loads). A pressure may follow the surface of the material instead (engine/tet_follow.h). Gravity acts on the points where they are at the start of a part of a step.
+ * loads). A body that leaves that surface ends the run. A pressure may follow the surface of the
+ * material instead (engine/tet_follow.h). Gravity acts on the points where they are at the start of a
+ * part of a step.
  */
 #include "engine/effects/solid_params.h"
 
