@@ -8,7 +8,7 @@
 #ifndef PW_ENGINE_THREADS_H
 #define PW_ENGINE_THREADS_H
 
-/** @brief @return threads of a parallel region without a number of its own. */
+/** @brief Threads of a parallel region without a number of its own. */
 int pw_threads_default(void);
 
 /** @brief Change it to @p threads >= 1. */
