@@ -78,18 +78,9 @@ static pw_status create_model(pw_implicit *sim, const pw_idx *body, int threads)
                       .material = sim->material};
   pw_tet_setup setup = {
       .mesh = &sim->mesh, .fill = &fill, .fbar = (pw_fbar)p->fbar, .threads = threads};
-  pw_newton_options options = pw_newton_defaults();
+  pw_newton_options options = pw_newton_options_of(p);
   pw_solid_model_options(&sim->scene, &setup, &options);
   PW_TRY(pw_tet_model_create(&setup, &sim->model));
-  options.tolerance = p->tolerance;
-  options.max_iterations = p->max_iterations;
-  options.max_cuts = p->max_cuts;
-  options.from_previous = p->from_previous;
-  options.approach = p->approach;
-  options.line_search = p->line_search;
-  options.cut_driven = p->cut_driven;
-  options.mechanisms = (pw_mechanisms)p->mechanisms;
-  options.solver = (pw_solver_engine)p->solver;
   return pw_newton_create(&sim->model, &options, &sim->newton);
 }
 

@@ -34,25 +34,10 @@ static void commit(void *ctx, const pw_real *u)
   pw_quad_model_commit(&q->model, u);
 }
 
-static pw_newton_options options_of(const pw_scene_implicit *p)
-{
-  pw_newton_options o = pw_newton_defaults();
-  o.tolerance = p->tolerance;
-  o.max_iterations = p->max_iterations;
-  o.max_cuts = p->max_cuts;
-  o.from_previous = p->from_previous;
-  o.approach = p->approach;
-  o.line_search = p->line_search;
-  o.cut_driven = p->cut_driven;
-  o.solver = (pw_solver_engine)p->solver;
-  o.mechanisms = PW_MECHANISMS_IGNORE;
-  return o;
-}
-
 static pw_status create_newton(pw_quad_steps *q, const pw_scene *scene)
 {
   pw_quad_model *m = &q->model;
-  const pw_newton_options options = options_of(&scene->solid.implicit);
+  pw_newton_options options = pw_newton_options_of(&scene->solid.implicit);
   const pw_newton_system system = {.ctx = q,
                                    .dofs = 2 * (size_t)m->sim->mesh.nnode,
                                    .csr = &m->csr,
@@ -72,6 +57,7 @@ static pw_status create_newton(pw_quad_steps *q, const pw_scene *scene)
                                    .evaluate = evaluate,
                                    .volumes = volumes,
                                    .commit = commit};
+  options.mechanisms = PW_MECHANISMS_IGNORE; /* they are found on tetrahedra */
   return pw_newton_create_for(&system, &options, &q->newton);
 }
 

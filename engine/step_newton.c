@@ -7,6 +7,7 @@
 
 #include "engine/core/mem.h"
 #include "engine/newton_part.h"
+#include "engine/scene_solid.h"
 #include "engine/tet_follow.h"
 
 pw_newton_options pw_newton_defaults(void)
@@ -18,6 +19,21 @@ pw_newton_options pw_newton_defaults(void)
                              .approach = 4,
                              .volume_limit = 10.0,
                              .mechanisms = PW_MECHANISMS_WARN};
+}
+
+pw_newton_options pw_newton_options_of(const pw_scene_implicit *p)
+{
+  pw_newton_options o = pw_newton_defaults();
+  o.tolerance = p->tolerance;
+  o.max_iterations = p->max_iterations;
+  o.max_cuts = p->max_cuts;
+  o.from_previous = p->from_previous;
+  o.approach = p->approach;
+  o.line_search = p->line_search;
+  o.cut_driven = p->cut_driven;
+  o.mechanisms = (pw_mechanisms)p->mechanisms;
+  o.solver = (pw_solver_engine)p->solver;
+  return o;
 }
 
 static pw_status allocate(pw_newton *n)

@@ -55,6 +55,11 @@ typedef struct pw_newton_options {
 /** @brief The values named above. */
 pw_newton_options pw_newton_defaults(void);
 
+struct pw_scene_implicit;
+
+/** @brief Those that the section `implicit` of a scene gives. */
+pw_newton_options pw_newton_options_of(const struct pw_scene_implicit *p);
+
 /** Load of a step. @p model is that of pw_newton_create(), NULL for another system. */
 typedef struct pw_newton_load {
   void *ctx;
