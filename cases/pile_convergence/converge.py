@@ -73,10 +73,10 @@ def expected_s(rows, contact, resolution):
 
 def time_left(args, rows):
     """What is still to be run takes about this long, in words; empty before the first run."""
-    todo = [(c, n) for n in args.resolutions for c in args.contacts][len(rows):]
+    ahead = [(c, n) for n in args.resolutions for c in args.contacts][len(rows):]
     if not rows:
         return ""
-    minutes = sum(expected_s(rows, c, n) for c, n in todo) / 60
+    minutes = sum(expected_s(rows, c, n) for c, n in ahead) / 60
     return f", about {minutes:.0f} min left" if minutes >= 1 else ", less than a minute left"
 
 
