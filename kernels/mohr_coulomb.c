@@ -173,6 +173,20 @@ static bool beyond_apex(const pw_mc *m, const pw_real *trial, pw_real top, bool 
                    less * e[0] + more * (e[1] + e[2]) >= 0.0;
 }
 
+/** Press a stress that a later pair of slacks leaves outside back onto the planes. */
+static void press_back(const plane *p, pw_real *stress)
+{
+  pw_real by = 0.0;
+  for (int k = 0; k < PLANES; k++) {
+    const pw_real over = dot(p[k].n, stress) - p[k].limit;
+    const pw_real across = p[k].n[0] + p[k].n[1] + p[k].n[2];
+    by = over > 0.0 && across > 0.0 ? pw_max(by, over / across) : by;
+  }
+  for (int c = 0; c < 3; c++) {
+    stress[c] -= by;
+  }
+}
+
 bool pw_mc_return(const pw_mc *m, const pw_real *trial, pw_real *stress, pw_real *tangent)
 {
   plane p[PLANES];
@@ -191,6 +205,9 @@ bool pw_mc_return(const pw_mc *m, const pw_real *trial, pw_real *stress, pw_real
     const pw_real *part = slack[k / sizeof sets], margin[2] = {part[0] * size, part[1] * size};
     if (cut || !(set & ~(unsigned)BY_SHEAR)) {
       done = try_set(p, set, trial, margin, &s);
+    }
+    if (done && k >= sizeof sets) {
+      press_back(p, s.stress);
     }
     at_apex = k + 1 == sizeof sets && top < PW_HUGE && beyond_apex(m, trial, top, cut);
   }

@@ -193,6 +193,7 @@ static void round_off_does_not_lead_to_the_apex(void **unused)
       const int twin = trial % 2 == 1 ? 0 : 2;
       const double total = fabs(t[0]) + fabs(t[2]) + m.strength;
       const double f = s[0] - s[2] + (s[0] + s[2]) * m.sin_phi - m.strength;
+      assert_true(f <= 1e-10 * total);
       furthest = fmax(furthest, fmax(fabs(f), fabs(s[1] - s[twin])) / total);
       assert_true(s[0] + s[1] + s[2] <= t[0] + t[1] + t[2] + 3e-6 * total);
       assert_true(s[2] < apex || t[0] + t[1] + t[2] > 3.0 * apex - 3e-6 * total);
