@@ -38,6 +38,9 @@ typedef struct pw_newton_system {
   /** @brief The load that follows for @p u [dofs], after the loads have changed; NULL where follow
    *  is. */
   void (*reload)(void *ctx, const pw_real *u);
+  /** @brief From the next evaluation on take the substeps of materials as the last one did, or, when
+   *  not @p on, as every increment needs them; NULL: there are none. */
+  void (*settle)(void *ctx, bool on);
   /** @brief Least and largest change of a volume with material over the part. */
   void (*volumes)(void *ctx, const pw_real *u, pw_real *ratio);
   /** @brief End a part: points take over what the last evaluation, of @p u, gave. */

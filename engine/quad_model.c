@@ -30,6 +30,7 @@ void pw_quad_model_destroy(pw_quad_model *m)
   pw_mem_free(&m->stress_trial);
   pw_mem_free(&m->state_trial);
   pw_mem_free(&m->increment);
+  pw_mem_free(&m->guide.of);
   memset(m, 0, sizeof *m);
 }
 
@@ -52,6 +53,15 @@ static pw_status allocate_nodes(pw_quad_model *m)
   return PW_OK;
 }
 
+static bool has_substeps(const pw_sim *sim)
+{
+  bool found = false;
+  for (int b = 0; b < sim->nbody; b++) {
+    found = found || sim->body[b].model->substeps;
+  }
+  return found;
+}
+
 static pw_status allocate(pw_quad_model *m)
 {
   const pw_sim *sim = m->sim;
@@ -64,6 +74,9 @@ static pw_status allocate(pw_quad_model *m)
   if (sim->points.nstate > 0) {
     PW_TRY(pw_mem_alloc("points: trial state", sim->points.nstate * ld, sizeof *m->state_trial,
                         &m->state_trial));
+  }
+  if (has_substeps(sim)) {
+    PW_TRY(pw_guide_create(&m->guide, sim->points.ld));
   }
   PW_TRY(pw_quad_ghost_create(m));
   PW_TRY(pw_quad_inertia_create(m));

@@ -28,6 +28,7 @@
 #ifndef PW_ENGINE_QUAD_MODEL_H
 #define PW_ENGINE_QUAD_MODEL_H
 
+#include "engine/newton_guide.h"
 #include "engine/quad_ghost.h"
 #include "engine/quad_inertia.h"
 #include "engine/sim_state.h"
@@ -57,6 +58,7 @@ typedef struct pw_quad_model {
   pw_real rounding;      /**< norm of the forces that rounding of strains may leave; N */
   pw_real *stress_trial; /**< [6][ld] at the end of the part as the last evaluation sees it; Pa */
   pw_real *state_trial;  /**< [nstate][ld] likewise, or NULL */
+  pw_newton_guide guide; /**< where a material takes substeps */
   pw_real *increment;    /**< [5][ld] F of the part: xx xy yx yy zz; - */
 } pw_quad_model;
 

@@ -28,7 +28,7 @@ typedef struct {
   gradients now[PW_CHUNK];
   pw_log_increment log_f[PW_CHUNK];
   pw_real increment[9 * PW_CHUNK], dstrain[6 * PW_CHUNK], spin[3 * PW_CHUNK];
-  pw_real dvol[PW_CHUNK], density[PW_CHUNK], wave_speed[PW_CHUNK];
+  pw_real dvol[PW_CHUNK], density[PW_CHUNK], wave_speed[PW_CHUNK], guide[PW_GUIDE_ROWS * PW_CHUNK];
   pw_real left_cg[6 * PW_CHUNK], jac[PW_CHUNK], def_grad[9 * PW_CHUNK];
   pw_real stress[6 * PW_CHUNK], state[PW_MAX_STATE * PW_CHUNK], tangent[36 * PW_CHUNK];
 } batch;
@@ -193,6 +193,9 @@ static pw_idx update_batch(const pw_quad_evaluation *ev, const pw_body *body, pw
                          .tangent = ev->tangent ? b->tangent : NULL,
                          .counts = &sums->material,
                          .bad = -1};
+  for (pw_idx k = 0; body->model->substeps && k < b->n; k++) {
+    pw_guide_point(&ev->m->guide, (size_t)(b->first + k), (size_t)k, &args, b->guide);
+  }
   const pw_status status = body->model->update(body->param, &args);
   for (pw_idx k = 0; ev->tangent && !args.of_f && k < b->n; k++) {
     pw_log_increment_tangent(&b->log_f[k], b->stress + k, b->tangent + k, PW_CHUNK);

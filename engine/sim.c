@@ -61,9 +61,11 @@ static void create_bodies(pw_sim *sim)
   sim->nbody = scene->nbody;
   for (int b = 0; b < scene->nbody; b++) {
     const pw_scene_material *m = &scene->material[scene->body[b].material];
+    const bool part = m->model->step_part != NULL;
     sim->body[b] = (pw_body){.name = scene->body[b].name,
                              .model = m->model,
                              .param = m->param,
+                             .step_part = part ? m->model->step_part(m->param) : 1.0,
                              .field = has_points(scene, b) ? body_field(scene, b) : 0};
   }
 }

@@ -33,7 +33,7 @@ typedef struct pw_block_sums {
   pw_real strain_work; /**< J per radian or metre, this step */
   pw_real kinetic;     /**< J per radian or metre, now */
   pw_real settled;     /**< taken out by the noise damping; J per radian or metre, this step */
-  pw_real speed_max;   /**< max of c + |v|; m/s */
+  pw_real speed_max;   /**< max of c + |v|, of c what steps resolve; m/s */
   pw_real rate_max;    /**< graded grid: max of (c + |v|) / cell near the point; 1/s */
   pw_off limited, rebuilt, reshaped;
   pw_idx bad; /**< first point whose stress or domain failed, or -1 */
@@ -50,6 +50,7 @@ typedef struct pw_body {
   const pw_material *model;
   const pw_real *param;
   int field;               /**< velocity field its points scatter to */
+  pw_real step_part;       /**< of its wave speed, that steps resolve; - */
   bool prescribed;         /**< its motion is given (prescribed_motion) */
   pw_real prescribed_v[2]; /**< m/s, this step */
   pw_real start[2];        /**< centre of mass at the start; m */

@@ -20,6 +20,12 @@ static pw_status evaluate(void *ctx, const pw_real *u, bool tangent)
   return pw_quad_model_evaluate(&q->model, u, tangent);
 }
 
+static void settle(void *ctx, bool on)
+{
+  pw_quad_steps *q = ctx;
+  q->model.guide.settled = on;
+}
+
 /* Of the last evaluation, which was that of u. */
 static void volumes(void *ctx, const pw_real *u, pw_real *ratio)
 {
@@ -55,6 +61,7 @@ static pw_status create_newton(pw_quad_steps *q, const pw_scene *scene)
                                    .symmetric = pw_quad_model_is_symmetric(m),
                                    .begin = begin,
                                    .evaluate = evaluate,
+                                   .settle = m->guide.of ? settle : NULL,
                                    .volumes = volumes,
                                    .commit = commit};
   options.mechanisms = PW_MECHANISMS_IGNORE; /* they are found on tetrahedra */

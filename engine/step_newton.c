@@ -116,6 +116,12 @@ static void reload_tets(void *ctx, const pw_real *u)
   pw_tet_follow_forces(ctx, u);
 }
 
+static void settle_tets(void *ctx, bool on)
+{
+  pw_tet_model *m = ctx;
+  m->guide.settled = on;
+}
+
 static void volumes_of_tets(void *ctx, const pw_real *u, pw_real *ratio)
 {
   pw_tet_model_volumes(ctx, u, ratio);
@@ -146,6 +152,7 @@ pw_status pw_newton_create(pw_tet_model *model, const pw_newton_options *options
                                    .begin = begin_tets,
                                    .evaluate = evaluate_tets,
                                    .reload = model->follow ? reload_tets : NULL,
+                                   .settle = model->guide.of ? settle_tets : NULL,
                                    .volumes = volumes_of_tets,
                                    .commit = commit_tets};
   return create(&system, model, options, out);
@@ -179,6 +186,11 @@ void pw_newton_destroy(pw_newton **newton)
   pw_mem_free(&n->right);
   pw_mem_free(&n->delta);
   pw_mem_free(newton);
+}
+
+void pw_newton_watch(pw_newton *n, pw_newton_watcher watcher)
+{
+  n->watcher = watcher;
 }
 
 const pw_real *pw_newton_displacement(const pw_newton *n)

@@ -114,7 +114,7 @@ void pw_newton_destroy(pw_newton **n);
  * @return PW_OK; PW_RETRY_DIVERGED when a part fails max_cuts times in a row or may not be cut, with
  *         the residuals in the error record: the model stands at the end of its last converged part;
  *         PW_ERR_POINT_LOST, PW_ERR_SOLVER, PW_ERR_MEMORY, or what load->move gives; PW_ERR_SCENE
- *         for a free mechanism where those are errors, and for loads on nodes without points;
+ *         for a free mechanism where those are errors, and for loads on nodes left out;
  *         PW_ERR_ARGUMENT for dynamics without step_s.
  */
 pw_status pw_newton_step(pw_newton *n, const pw_newton_load *load, pw_newton_report *report);
@@ -142,6 +142,17 @@ pw_real pw_newton_next_size(const pw_newton_course *c, pw_real size,
  * @return as pw_newton_step(); after a failure c is as it was.
  */
 pw_status pw_newton_advance(pw_newton *n, pw_newton_course *c, pw_newton_report *report);
+
+/** Somebody who looks at every iterate. */
+typedef struct pw_newton_watcher {
+  void *ctx;
+  /** @brief Look at the displacements @p u [dofs] over the part and what they leave, @p residual;
+   *  forces of the system and trial states of its points are those of u. NULL: nobody. */
+  void (*look)(void *ctx, const pw_real *u, pw_real residual);
+} pw_newton_watcher;
+
+/** @brief From now on show every iterate to @p watcher, those of failed parts and of approaches too. */
+void pw_newton_watch(pw_newton *n, pw_newton_watcher watcher);
 
 /** @brief Displacement of the nodes over the last part [dofs] of the system, [3][nnode]; m. */
 const pw_real *pw_newton_displacement(const pw_newton *n);

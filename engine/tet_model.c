@@ -43,7 +43,17 @@ void pw_tet_model_destroy(pw_tet_model *m)
   pw_mem_free(&m->mass);
   pw_mem_free(&m->ghost.face);
   pw_mem_free(&m->ghost.cut);
+  pw_mem_free(&m->guide.of);
   memset(m, 0, sizeof *m);
+}
+
+static bool has_substeps(const pw_tet_model *m)
+{
+  bool found = false;
+  for (pw_idx i = 0; i < m->nmaterial; i++) {
+    found = found || m->material[i].model->substeps;
+  }
+  return found;
 }
 
 static pw_status allocate(pw_tet_model *m, bool follower)
@@ -65,6 +75,9 @@ static pw_status allocate(pw_tet_model *m, bool follower)
   if (m->ghost.gamma > 0.0) {
     PW_TRY(pw_mem_alloc("ghost: faces", 2 * nelem, sizeof *m->ghost.face, &m->ghost.face));
     PW_TRY(pw_mem_alloc("ghost: cut elements", nelem, sizeof *m->ghost.cut, &m->ghost.cut));
+  }
+  if (has_substeps(m)) {
+    PW_TRY(pw_guide_create(&m->guide, m->points.ld));
   }
   PW_TRY(pw_mem_alloc("nodes: active", n / 3, sizeof *m->active, &m->active));
   PW_TRY(pw_mem_alloc("nodes: internal force", n, sizeof *m->force, &m->force));

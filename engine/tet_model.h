@@ -21,6 +21,7 @@
 #define PW_ENGINE_TET_MODEL_H
 
 #include "engine/csr.h"
+#include "engine/newton_guide.h"
 #include "engine/tet_points.h"
 #include "partition/patch_blocks.h"
 
@@ -88,6 +89,7 @@ typedef struct pw_tet_model {
   bool has_mass;    /**< see engine/tet_loads.h */
   pw_tet_inertia inertia;
   pw_tet_ghost ghost;
+  pw_newton_guide guide;         /**< where a material takes substeps */
   struct pw_tet_follow *surface; /**< surfaces under such loads, borrowed; or NULL */
   pw_walk_counts walked;         /**< searches of the last pw_tet_model_begin() */
   pw_walk_counts *chunk;         /**< counts of a chunk of points */

@@ -58,7 +58,7 @@ typedef struct {
   pw_real increment[9 * PW_CHUNK], dstrain[6 * PW_CHUNK], spin[3 * PW_CHUNK];
   pw_real dvol[PW_CHUNK], density[PW_CHUNK], wave_speed[PW_CHUNK];
   pw_real left_cg[6 * PW_CHUNK], jac[PW_CHUNK]; /* where the points keep b */
-  pw_real def_grad[9 * PW_CHUNK], x[3 * PW_CHUNK];
+  pw_real def_grad[9 * PW_CHUNK], x[3 * PW_CHUNK], guide[PW_GUIDE_ROWS * PW_CHUNK];
   pw_real stress[6 * PW_CHUNK], state[PW_MAX_STATE * PW_CHUNK], tangent[36 * PW_CHUNK];
 } batch;
 
@@ -211,6 +211,9 @@ static pw_status update_batch(const pw_tet_model *m, pw_patch_motion *t, pw_idx 
                          .state = b->state,
                          .wave_speed = b->wave_speed,
                          .tangent = tangent ? b->tangent : NULL};
+  for (pw_idx k = 0; material->model->substeps && k < b->n; k++) {
+    pw_guide_point(&m->guide, (size_t)b->point[k], (size_t)k, &args, b->guide);
+  }
   pw_status status = material->model->update(material->param, &args);
   t->why = status != PW_OK && !t->why ? args.why : t->why;
   if (tangent && !args.of_f) {

@@ -154,22 +154,24 @@ static void set_bad(pw_block_sums *sums, pw_idx point, pw_status status)
   }
 }
 
-/* Largest (c + |v|) / h of the points, with the smallest cell h at each or beside it. */
-static pw_real fastest_crossing(const pw_sim *sim, const batch *s, pw_idx first, pw_idx n)
+/* Largest (c + |v|) / h of the points, with the part c of the wave speeds that steps resolve and the
+ * smallest cell h at each or beside it. */
+static pw_real fastest_crossing(const pw_sim *sim, const batch *s, pw_real part, pw_idx first,
+                                pw_idx n)
 {
   const pw_points *p = &sim->points;
   pw_real rate = 0.0;
   for (pw_idx i = 0; i < n; i++) {
     pw_real x[2] = {p->x[first + i], p->x[p->ld + first + i]};
     pw_real vx = p->v[first + i], vy = p->v[p->ld + first + i];
-    pw_real speed = s->wave_speed[i] + sqrt(vx * vx + vy * vy);
+    pw_real speed = part * s->wave_speed[i] + sqrt(vx * vx + vy * vy);
     rate = pw_max(rate, speed / pw_mesh_near_size(&sim->mesh, x));
   }
   return rate;
 }
 
-/* Work of the mean stress over the step, and the fastest signal c + |v|. */
-static void sum_batch(const pw_sim *sim, const batch *s, pw_idx first, pw_idx n,
+/* Work of the mean stress over the step, and the fastest signal c + |v| of what steps resolve. */
+static void sum_batch(const pw_sim *sim, const batch *s, pw_real part, pw_idx first, pw_idx n,
                       pw_block_sums *sums)
 {
   const pw_points *p = &sim->points;
@@ -189,10 +191,10 @@ static void sum_batch(const pw_sim *sim, const batch *s, pw_idx first, pw_idx n,
     bad = v2 < PW_HUGE || bad >= 0 ? bad : first + i; /* NaN too */
     work += 0.5 * w * vol[i];
     kinetic += 0.5 * p->mass[first + i] * v2;
-    speed = pw_max(speed, s->wave_speed[i] + sqrt(v2));
+    speed = pw_max(speed, part * s->wave_speed[i] + sqrt(v2));
   }
   if (sim->mesh.graded) {
-    sums->rate_max = pw_max(sums->rate_max, fastest_crossing(sim, s, first, n));
+    sums->rate_max = pw_max(sums->rate_max, fastest_crossing(sim, s, part, first, n));
   }
   sums->strain_work += work;
   sums->kinetic += kinetic;
@@ -285,7 +287,7 @@ static void stress_batch(pw_sim *sim, int b, batch *s, pw_idx first, pw_idx n, p
   if (p->wave_speed) {
     memcpy(p->wave_speed + first, s->wave_speed, (size_t)n * sizeof *p->wave_speed);
   }
-  sum_batch(sim, s, first, n, sums);
+  sum_batch(sim, s, body->step_part, first, n, sums);
 }
 
 static void clear_sums(pw_block_sums *sums)

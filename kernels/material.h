@@ -56,6 +56,9 @@ typedef struct pw_stress_args {
   const pw_real *x;           /**< [dim][ldx] where the points are, or NULL; m */
   pw_idx ldx;                 /**< leading dimension of x */
   int dim;                    /**< coordinates of x: 2 or 3 */
+  const pw_real *guide;       /**< [10][ldi] strain, spin and volume ratio of an increment whose
+                               substeps are to be taken, whatever the increment; NULL: substeps as
+                               the increment needs them. For models that set substeps */
   pw_real *tangent;           /**< [36][ldi] out, row-major d stress / d strain with ENGINEERING
                                shear columns, or NULL when not asked for; Pa. Models in rate form:
                                by the increment dstrain; models of F: by a further strain e of
@@ -89,6 +92,7 @@ typedef struct pw_material {
                                    by F */
   bool symmetric;             /**< the tangent by F makes a symmetric stiffness matrix: no friction
                                with other flow, no rate form */
+  bool substeps;              /**< takes an increment in substeps that depend on it */
   bool takes_initial_stress;  /**< may start from a prescribed stress */
   /** @brief Cross-parameter rules. @return PW_OK or PW_ERR_SCENE with the broken rule. */
   pw_status (*check)(const pw_real *param);
@@ -96,6 +100,10 @@ typedef struct pw_material {
   int (*nstate)(const pw_real *param);
   /** @brief Density of a stress-free point; kg/m3. */
   pw_real (*density)(const pw_real *param);
+  /** @brief Part of its wave speed that an explicit step is to resolve; NULL: all of it. Less
+   *  than 1 for a stiffness that lasts for the smallest of strains only: what oscillates there
+   *  cannot grow beyond them. */
+  pw_real (*step_part)(const pw_real *param);
   /** @brief Tell @p n points their height once, before any init(); NULL when the model does not
    *  depend on it. @param[in] y [n] vertical coordinate at the start; m */
   void (*place)(const pw_real *param, pw_idx n, pw_idx ld, const pw_real *y, pw_real *state);

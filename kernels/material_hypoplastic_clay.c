@@ -146,13 +146,30 @@ static pw_hypo_point read(const pw_clay *c, const pw_stress_args *a, size_t p)
   return at;
 }
 
+/** Advance a point by the substeps that its guide takes from where it starts. */
+static pw_status repeat(const pw_clay *c, const pw_stress_args *a, size_t p, pw_hypo_point *at,
+                        pw_hypo_path *path)
+{
+  const size_t li = (size_t)a->ldi;
+  pw_stress_args g = *a;
+  g.spin = a->guide + 6 * li;
+  pw_hypo_point first = read(c, &g, p);
+  pw_t6 de = pw_t6_load(a->guide + p, li);
+  PW_TRY(pw_clay_integrate(c, de, a->guide[9 * li + p], &first, path, a->counts));
+  PW_TRY(pw_clay_repeat(c, pw_t6_load(a->dstrain + p, li), a->dvol[p], at, path));
+  at->substep = first.substep;
+  return PW_OK;
+}
+
 static pw_status update_point(const pw_clay *c, const pw_stress_args *a, size_t p)
 {
   const size_t l = (size_t)a->ld;
   pw_hypo_path path;
   pw_hypo_point start = read(c, a, p), end = start;
   pw_t6 de = pw_t6_load(a->dstrain + p, (size_t)a->ldi);
-  pw_status s = pw_clay_integrate(c, de, a->dvol[p], &end, a->tangent ? &path : NULL, a->counts);
+  pw_status s =
+      a->guide ? repeat(c, a, p, &end, &path)
+               : pw_clay_integrate(c, de, a->dvol[p], &end, a->tangent ? &path : NULL, a->counts);
   if (s == PW_OK) {
     pw_t6_store(end.stress, a->stress + p, l);
     a->state[VOID_RATIO * l + p] = end.void_ratio;
@@ -181,7 +198,7 @@ static pw_idx update_chunk(const pw_clay *c, const pw_stress_args *a)
 {
   pw_real done[PW_CHUNK] = {0};
   pw_idx bad = -1;
-  if (!a->tangent) {
+  if (!a->tangent && !a->guide) {
     pw_clay_advance(c, pw_spin_is_plane(a->spin, (size_t)a->ldi, a->n), a, done);
   }
   for (pw_idx i = 0; i < a->n; i++) {
@@ -218,6 +235,7 @@ const pw_material pw_material_hypoplastic_clay = {
     .brief = "hypoplastic clay (Masin 2005) with intergranular strain (Niemunis and Herle 1997)",
     .keys = keys,
     .states = states,
+    .substeps = true,
     .takes_initial_stress = true,
     .check = check,
     .nstate = nstate,

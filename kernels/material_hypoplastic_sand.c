@@ -47,6 +47,9 @@ static const pw_key keys[] = {
          "largest Matsuoka-Nakai friction angle"),
     REAL("max_substeps", PW_HYPO_MAX_SUBSTEPS, 10.0, PW_HYPO_SUBSTEP_LIMIT, "400",
          "substeps of one increment, after which the rest is taken at once"),
+    REAL("step_stiffness_ratio", PW_HYPO_STEP_RATIO, 0.0, 1e3, "0",
+         "stiffness that explicit steps resolve, from m_T up to m_R, which holds within strains of "
+         "elastic_range_r only; 0: m_R"),
     {NULL, PW_KEY_REAL, 0, 0, 0, NULL, NULL, NULL, NULL},
 };
 
@@ -91,6 +94,12 @@ static pw_status check(const pw_real *v)
     PW_REQUIRE(v[PW_HYPO_R] > 0.0 && v[PW_HYPO_BETA_R] > 0.0 && v[PW_HYPO_CHI] > 0.0, PW_ERR_SCENE,
                "elastic_range_r, exponent_beta_r, exponent_chi must be positive: %g, %g, %g",
                v[PW_HYPO_R], v[PW_HYPO_BETA_R], v[PW_HYPO_CHI]);
+    PW_REQUIRE(v[PW_HYPO_STEP_RATIO] == 0.0 || (v[PW_HYPO_STEP_RATIO] >= v[PW_HYPO_M_T] &&
+                                                v[PW_HYPO_STEP_RATIO] <= v[PW_HYPO_M_R]),
+               PW_ERR_SCENE,
+               "step_stiffness_ratio = %g must lie between stiffness_ratio_m_t = %g and "
+               "stiffness_ratio_m_r = %g",
+               v[PW_HYPO_STEP_RATIO], v[PW_HYPO_M_T], v[PW_HYPO_M_R]);
   }
   return PW_OK;
 }
@@ -103,6 +112,12 @@ static int nstate(const pw_real *v)
 static pw_real density(const pw_real *v)
 {
   return v[PW_HYPO_GRAIN_DENSITY] / (1.0 + v[PW_HYPO_VOID_RATIO]);
+}
+
+static pw_real step_part(const pw_real *v)
+{
+  const bool less = v[PW_HYPO_INTERGRANULAR] > 0.5 && v[PW_HYPO_STEP_RATIO] > 0.0;
+  return less ? sqrt(v[PW_HYPO_STEP_RATIO] / v[PW_HYPO_M_R]) : 1.0;
 }
 
 static void init(const pw_real *v, pw_idx n, pw_idx ld, const pw_real *stress, pw_real *state)
@@ -141,14 +156,34 @@ static void tangent_of(const pw_hypo *h, const pw_stress_args *a, const pw_hypo_
   }
 }
 
+/** Advance a point by the substeps that its guide takes from where it starts. */
+static pw_status repeat(const pw_hypo *h, const pw_stress_args *a, pw_idx i, pw_hypo_point *p,
+                        pw_hypo_path *path, pw_real *modulus)
+{
+  const size_t li = (size_t)a->ldi;
+  pw_stress_args g = *a;
+  pw_hypo_rates end;
+  g.spin = a->guide + 6 * li;
+  pw_hypo_point first = pw_hypo_read(h, &g, pw_spin_is_plane(g.spin + i, li, 1), i);
+  pw_t6 de = pw_t6_load(a->guide + i, li);
+  PW_TRY(pw_hypo_integrate(h, de, a->guide[9 * li + (size_t)i], &first, path, a->counts, NULL));
+  PW_TRY(pw_hypo_repeat(h, pw_t6_load(a->dstrain + i, li), a->dvol[i], p, path));
+  p->substep = first.substep;
+  pw_hypo_evaluate(h, p, (pw_t6){0}, &end);
+  *modulus = end.modulus;
+  return PW_OK;
+}
+
 /** Advance point @p i on its own, with as many substeps as it takes. */
 static pw_status update_point(const pw_hypo *h, pw_stress_args *a, bool plane, pw_idx i)
 {
   pw_hypo_path path;
   pw_real modulus = 0.0;
   pw_hypo_point start = pw_hypo_read(h, a, plane, i), end = start;
-  pw_status s = pw_hypo_integrate(h, pw_t6_load(a->dstrain + i, (size_t)a->ldi), a->dvol[i], &end,
-                                  a->tangent ? &path : NULL, a->counts, &modulus);
+  pw_status s = a->guide
+                    ? repeat(h, a, i, &end, &path, &modulus)
+                    : pw_hypo_integrate(h, pw_t6_load(a->dstrain + i, (size_t)a->ldi), a->dvol[i],
+                                        &end, a->tangent ? &path : NULL, a->counts, &modulus);
   if (s == PW_OK) {
     pw_hypo_write(h, a, &end, i);
   } else { /* the point keeps its state: its wave speed is that of the start */
@@ -170,7 +205,7 @@ static pw_status update(const pw_real *param, pw_stress_args *a)
   pw_real done[PW_CHUNK];
   pw_hypo_derive(param, &h);
   bool plane = pw_spin_is_plane(a->spin, (size_t)a->ldi, a->n);
-  bool several = !a->tangent && a->n <= PW_CHUNK;
+  bool several = !a->tangent && !a->guide && a->n <= PW_CHUNK;
   if (several) {
     pw_hypo_advance_smooth(&h, plane, a, done);
     pw_hypo_advance_rest(&h, plane, a, done);
@@ -199,10 +234,12 @@ const pw_material pw_material_hypoplastic_sand = {
              "Herle 1997)",
     .keys = keys,
     .states = states,
+    .substeps = true,
     .takes_initial_stress = true,
     .check = check,
     .nstate = nstate,
     .density = density,
+    .step_part = step_part,
     .init = init,
     .update = update,
     .mobilised_angle = mobilised_angle,

@@ -72,6 +72,7 @@ static inline pw_stress_args pw_rate_part(const pw_stress_args *a, pw_idx first,
   part.stress += first;
   part.state = a->state ? a->state + first : NULL;
   part.wave_speed += first;
+  part.guide = a->guide ? a->guide + first : NULL;
   part.tangent = a->tangent ? a->tangent + first : NULL;
   return part;
 }

@@ -31,6 +31,10 @@ expect_text stderr 'no balance between t = 0 and 1 of a load step'
 expect_text stderr 'residuals: [0-9]'
 expect_status failed failed
 
+# Loads of nodes that hardly have material would be lost: told where there are nodes left out.
+expect_exit 3 "$program" run "$slump" $plain --out light --set method.mass_cut_off=0.05
+expect_text stderr '[0-9] of [0-9.e+]+ N of load act on nodes that method.mass_cut_off leaves out'
+
 # What implicit steps do not know, and what explicit ones do not.
 expect_refused() {
   text=$1

@@ -180,12 +180,78 @@ static void disc_is_round(void **state)
   destroy(&s);
 }
 
+/* Place of x on the surface, when it is near. */
+static bool place_of(const setting *s, const pw_real *x, pw_round_place *place)
+{
+  pw_real weight[4];
+  pw_idx node[4];
+  pw_mesh_shape(&s->mesh, x, node, weight);
+  return pw_round_line_near(&s->round, x, node[0], 0.25, place);
+}
+
+/* The gap over a convex body is a convex function: beyond its tangent, and no steeper than one. What
+ * the search leaves out rests on both. */
+static void gap_is_supported_by_its_tangent(void **state)
+{
+  (void)state;
+  setting s = {0};
+  uint64_t seed = 5;
+  int pairs = 0, outside = 0;
+  square(&s);
+  assert_true(s.round.convex);
+  for (int i = 0; i < 20000; i++) {
+    pw_real x[2], y[2], d[2];
+    pw_round_place from, to;
+    for (int c = 0; c < 2; c++) {
+      x[c] = -0.25 + 1.5 * test_random(&seed);
+      d[c] = 0.4 * (test_random(&seed) - 0.5);
+      y[c] = x[c] + d[c];
+    }
+    if (!place_of(&s, x, &from) || !place_of(&s, y, &to)) {
+      continue;
+    }
+    pairs++;
+    pw_round_place sought;
+    if (pw_round_line_seek(&s.round, (pw_idx)(40.0 * test_random(&seed)), x, &sought)) {
+      outside++;
+      assert_near(sought.gap, from.gap, 1e-14);
+      assert_true(sought.n[0] * from.n[0] + sought.n[1] * from.n[1] > 1.0 - 1e-12);
+    }
+    assert_true(fabs(to.gap - from.gap) <= hypot(d[0], d[1]) + 1e-12);
+    if (pw_round_line_supports(&s.round, &from)) {
+      assert_true(to.gap >= from.gap + from.n[0] * d[0] + from.n[1] * d[1] - 1e-12);
+    }
+  }
+  assert_true(pairs > 5000 && outside > 2000);
+  destroy(&s);
+}
+
+static void a_hollow_line_supports_nothing(void **state)
+{
+  (void)state;
+  setting s = {0};
+  const pw_real xy[12] = {0, 0, 1, 0, 1, 1, 0.5, 1, 0.5, 0.5, 0, 0.5};
+  pw_round_place place;
+  assert_ok(pw_mesh_create((pw_real[]){-1, -1}, (pw_real[]){3, 3}, 0.25, &s.mesh));
+  assert_ok(pw_interface_create(xy, NULL, 6, true, false, 6, &s.line));
+  assert_ok(pw_round_line_create(&s.line, ROUNDING, &s.mesh, &s.round));
+  pw_round_line_update(&s.round, &s.mesh);
+  assert_true(place_of(&s, (pw_real[]){0.25, -0.1}, &place));
+  assert_near(place.gap, 0.1, 1e-12);
+  assert_false(pw_round_line_supports(&s.round, &place));
+  destroy(&s);
+}
+
 int main(void)
 {
   const struct CMUnitTest tests[] = {
-      cmocka_unit_test(exact_all_around),    cmocka_unit_test(force_turns_without_a_jump),
-      cmocka_unit_test(deep_keeps_its_side), cmocka_unit_test(nothing_beyond_a_free_end),
+      cmocka_unit_test(exact_all_around),
+      cmocka_unit_test(force_turns_without_a_jump),
+      cmocka_unit_test(deep_keeps_its_side),
+      cmocka_unit_test(nothing_beyond_a_free_end),
       cmocka_unit_test(disc_is_round),
+      cmocka_unit_test(gap_is_supported_by_its_tangent),
+      cmocka_unit_test(a_hollow_line_supports_nothing),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

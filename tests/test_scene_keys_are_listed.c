@@ -52,6 +52,8 @@ static const char *const dimensionless[] = {
     "amplitude",
     "friction",
     "stiffness_factor",
+    "step_stiffness_ratio",
+    "step_frequency_max",
     "domain_aspect_max",
     "split_factor",
     "thin_factor",

@@ -44,6 +44,7 @@ typedef struct pw_contact_corner_param {
   pw_real adhesion_gap_m;        /**< adhesion acts up to this distance; 0: where it presses */
   pw_real shear_limit_pa;        /**< most shear stress; 0: no limit */
   pw_real stiffness_factor;      /**< of the slave's modulus over half a domain */
+  pw_real step_frequency_max;    /**< largest step times the frequency of the springs */
   pw_real normal_stiffness_pa_m; /**< 0: by the factor */
   pw_real segment_m;             /**< 0: a quarter of a cell */
   pw_real rounding_m;            /**< of the master's convex edges; negative: half a segment */

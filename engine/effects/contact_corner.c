@@ -40,6 +40,8 @@ static const pw_key keys[] = {
    "fiftieth of the stiffest in contact counts as that"},
   {"normal_stiffness_pa_m", PW_KEY_REAL, AT(normal_stiffness_pa_m), 0, 1e20, "0", NULL, NULL,
    "contact pressure per metre of overlap; 0: by stiffness_factor from the present wave speed"},
+  {"step_frequency_max", PW_KEY_REAL, AT(step_frequency_max), 0.05, 2, "0.8", NULL, NULL,
+   "largest step times the frequency of the springs, which is bounded from above, by about twice"},
   {"segment_m", PW_KEY_REAL, AT(segment_m), 0, 1e6, "0", NULL, NULL,
    "largest length of the master's surface segments, at most a cell; 0: a quarter of a cell"},
   {"rounding_m", PW_KEY_REAL, AT(rounding_m), 0, 1e6, "0", NULL, NULL,

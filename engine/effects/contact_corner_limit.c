@@ -5,13 +5,18 @@
 
 #include <math.h>
 
-/* Steps resolve the highest frequency of the contact, as bounded from above, by this: with the
- * grid's own, resolved by at most 1.5, the step stays stable (limit 2). The bound is about twice
- * the frequency of a face that meets the master at once; the error of such an impact is 1 % of its
- * energy in the mean over the phase at which it is seen. */
-static const pw_real RESOLVE = 0.8;
-/* Square of the most that the step may be times the frequency in a step chosen by others. */
-static const pw_real LIMIT2 = 2.25;
+/*
+ * Steps resolve the highest frequency of the contact, as bounded from above, by step_frequency_max.
+ * By 0.8, with the grid's own, resolved by at most 1.5, the step stays stable (limit 2). The bound is
+ * about twice the frequency of a face that meets the master at once; the error of such an impact
+ * is 1 % of its energy in the mean over the phase at which it is seen.
+ */
+
+/* The most that the step may be times the frequency in a step chosen by others, over what it is in a
+ * step that the contact has chosen. */
+static const pw_real MARGIN = 1.875;
+/* And this at most: the true frequency is about half of the bound. */
+static const pw_real LIMIT = 3.0;
 
 enum { NODES = 16 /* grid nodes that a site, or two nodes of a line, reach */ };
 
@@ -174,7 +179,8 @@ pw_real pw_corner_limit(pw_corner *c)
   if (c->npair == 0) {
     return 0.0;
   }
-  const pw_real dt2 = c->sim->dt * c->sim->dt;
+  const pw_real resolve = c->param->step_frequency_max, limit = pw_min(MARGIN * resolve, LIMIT);
+  const pw_real dt2 = c->sim->dt * c->sim->dt, limit2 = limit * limit;
   pw_real rate = slave_rate(c), shift = 0.0;
   if (c->structure && (!c->given || c->structure->kind == PW_BODY_ROD)) { /* a rod yields */
     shift = structure_rate(c);
@@ -183,9 +189,9 @@ pw_real pw_corner_limit(pw_corner *c)
     rate += rates_on_grid(c, 1, c->master_rec);
   }
   for (pw_idx k = 0; k < c->npair; k++) {
-    if ((c->pair[k].rate + shift) * dt2 > LIMIT2) {
-      soften(c, &c->pair[k], LIMIT2 / ((c->pair[k].rate + shift) * dt2));
+    if ((c->pair[k].rate + shift) * dt2 > limit2) {
+      soften(c, &c->pair[k], limit2 / ((c->pair[k].rate + shift) * dt2));
     }
   }
-  return rate > 0.0 ? RESOLVE / sqrt(rate) : 0.0;
+  return rate > 0.0 ? resolve / sqrt(rate) : 0.0;
 }

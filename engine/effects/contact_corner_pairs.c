@@ -16,6 +16,8 @@ static const pw_real LEFT = 0.02;
  * has lost its stress for a moment, under a tip say, would let the master in as far as it is soft,
  * and come back stiff: overlap that no force explains. The step resolves the stiffest anyway. */
 static const pw_real SOFTEST = 0.02;
+/* Rounding of a gap, in cells. */
+static const pw_real CLEAR = 1e-6;
 /* Jumps of a site that is held are taken up to this part of half a domain. */
 static const pw_real ABSORBED = 0.15;
 
@@ -98,6 +100,105 @@ static pw_real modulus_of(const pw_points *p, pw_idx i)
   return p->mass[i] / p->vol[i] * p->wave_speed[i] * p->wave_speed[i];
 }
 
+/* Whether any site of a point is held, or waits to be. */
+static bool any_held(const pw_points *p, pw_idx i)
+{
+  bool held = false;
+  for (int site = 0; site < PW_SITES; site++) {
+    held = held || p->contact_arc[(pw_off)site * p->ld + i] != -1.0;
+  }
+  return held;
+}
+
+/* Where a point's centre is, and how far its sites are from it. */
+typedef struct {
+  pw_round_place place;
+  pw_real radius;
+  bool found; /**< its centre is near the surface */
+} centre;
+
+/* *last: segment at the point before, or -1; points of a block are neighbours. */
+static centre look_from_centre(const pw_corner *c, const pw_domain_now *d, pw_idx *last)
+{
+  const pw_mesh *mesh = &c->sim->mesh;
+  centre at = {.radius = 0.0};
+  pw_real radius2 = 0.0, x[2], weight[4];
+  pw_idx node[4];
+  for (int k = 0; k < 4; k++) { /* the middles of edges are nearer */
+    pw_site_place(d, k, x);
+    const pw_real dx = x[0] - d->x[0], dy = x[1] - d->x[1];
+    radius2 = pw_max(radius2, dx * dx + dy * dy);
+  }
+  at.found = *last >= 0 && pw_round_line_seek(&c->surface, *last, d->x, &at.place);
+  if (!at.found) {
+    pw_mesh_shape(mesh, d->x, node, weight);
+    at.found = pw_round_line_near(&c->surface, d->x, node[0], mesh->cell, &at.place);
+  }
+  *last = at.found ? at.place.segment : *last;
+  at.radius = sqrt(radius2);
+  return at;
+}
+
+/* Whether no site of a point that holds none can be inside: the gap changes by no more than the
+ * distance. */
+static bool all_clear(const pw_corner *c, pw_idx i, const centre *at)
+{
+  const pw_real margin = c->param->adhesion_gap_m + CLEAR * c->sim->mesh.cell;
+  if (!at->found || any_held(&c->sim->points, i)) {
+    return false;
+  }
+  return at->place.gap != c->surface.rounding && at->place.gap > at->radius + margin;
+}
+
+/* Whether a site is clear of a convex surface, beyond its tangent at the centre. */
+static bool site_clear(const pw_corner *c, pw_idx i, const pw_domain_now *d, int site,
+                       const centre *at)
+{
+  const pw_points *p = &c->sim->points;
+  const pw_real margin = c->param->adhesion_gap_m + CLEAR * c->sim->mesh.cell;
+  if (!at->found || p->contact_arc[(pw_off)site * p->ld + i] != -1.0 ||
+      !pw_round_line_supports(&c->surface, &at->place)) {
+    return false;
+  }
+  pw_real x[2];
+  pw_site_place(d, site, x);
+  const pw_real *n = at->place.n;
+  return at->place.gap + n[0] * (x[0] - d->x[0]) + n[1] * (x[1] - d->x[1]) > margin;
+}
+
+/* Whether the cell of a corner has a part of the surface beside it. */
+static bool point_near(const pw_corner *c, pw_idx i)
+{
+  const pw_points *p = &c->sim->points;
+  bool near = false;
+  for (int k = 0; k < 4; k++) {
+    near = near || pw_bins_near(&c->surface.bins, p->corner[(pw_off)k * p->ld + i]);
+  }
+  return near;
+}
+
+static void find_at_point(pw_corner *c, pw_idx i, pw_idx from, pw_idx *segment,
+                          pw_corner_sums *sums)
+{
+  if (!point_near(c, i) && !any_held(&c->sim->points, i)) {
+    return;
+  }
+  const pw_domain_now d = pw_domain_of(&c->sim->points, i, c->surface.line->axi);
+  const centre at = look_from_centre(c, &d, segment);
+  const pw_idx before = sums->count;
+  if (all_clear(c, i, &at)) {
+    return;
+  }
+  for (int site = 0; site < PW_SITES; site++) {
+    if (!site_clear(c, i, &d, site, &at)) {
+      find_site(c, i, &d, site, from, sums);
+    }
+  }
+  if (sums->count > before) {
+    sums->modulus = pw_max(sums->modulus, modulus_of(&c->sim->points, i));
+  }
+}
+
 static void find_in_block(void *ctx, pw_idx block)
 {
   pw_corner *c = ctx;
@@ -107,15 +208,9 @@ static void find_in_block(void *ctx, pw_idx block)
   if (first == last || !block_near(c, block)) {
     return;
   }
+  pw_idx segment = -1;
   for (pw_idx i = first; i < last; i++) {
-    pw_domain_now d = pw_domain_of(&c->sim->points, i, c->surface.line->axi);
-    const pw_idx before = sums->count;
-    for (int site = 0; site < PW_SITES; site++) {
-      find_site(c, i, &d, site, PW_SITES * first, sums);
-    }
-    if (sums->count > before) {
-      sums->modulus = pw_max(sums->modulus, modulus_of(&c->sim->points, i));
-    }
+    find_at_point(c, i, PW_SITES * first, &segment, sums);
   }
 }
 

@@ -10,6 +10,8 @@ static const pw_real PI = 3.14159265358979323846;
 static const pw_real SHARPEST = 0.1;
 /* Part of a segment that the rounding of its ends may take. */
 static const pw_real MOST = 0.75;
+/* Sine of a turn that rounding makes of a straight line. */
+static const pw_real STRAIGHT = 1e-9;
 /* Beyond the free end of a line by this part of a segment there is no contact. */
 static const pw_real OVER_END = 0.01;
 
@@ -53,9 +55,11 @@ static pw_real half_turn(const pw_interface *line, pw_idx k)
 static void move_inwards(pw_round_line *r)
 {
   const pw_interface *line = r->line;
+  r->convex = true;
   for (pw_idx k = 0; k < line->n; k++) {
     pw_real a[2] = {0.0, 0.0}, b[2] = {0.0, 0.0};
     normals_at(line, k, a, b);
+    r->convex = r->convex && a[0] * b[1] - a[1] * b[0] > -STRAIGHT;
     pw_real by = r->rounding / pw_max(1.0 + a[0] * b[0] + a[1] * b[1], SHARPEST);
     for (int c = 0; c < 2; c++) {
       r->inner.node[k].x[c] = line->node[k].x[c] - by * (a[c] + b[c]);
@@ -226,10 +230,26 @@ static pw_idx segment_at(const pw_round_line *r, pw_real arc)
   return low;
 }
 
+/* Along the line from a segment on, while that is nearer. */
+static void track(const pw_round_line *r, pw_idx from, const pw_real *x, pw_round_place *place)
+{
+  pw_pair pair;
+  pw_idx owner = pw_interface_track(&r->inner, from, x, &pair);
+  set_place(r, owner, &pair, x, place);
+}
+
 void pw_round_line_follow(const pw_round_line *r, pw_real arc, const pw_real *x,
                           pw_round_place *place)
 {
-  pw_pair pair;
-  pw_idx owner = pw_interface_track(&r->inner, segment_at(r, arc), x, &pair);
-  set_place(r, owner, &pair, x, place);
+  track(r, segment_at(r, arc), x, place);
+}
+
+/* Where x lies in front of the line, along its normal, a convex body has no place that is nearer. */
+bool pw_round_line_seek(const pw_round_line *r, pw_idx from, const pw_real *x,
+                        pw_round_place *place)
+{
+  if (r->convex) {
+    track(r, from, x, place);
+  }
+  return r->convex && place->gap > 0.0;
 }

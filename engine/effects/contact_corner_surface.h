@@ -23,6 +23,7 @@ typedef struct pw_round_line {
   pw_real *length;          /**< [n] of the inner segments at the start; m */
   pw_real total;            /**< of a closed surface at the start; m */
   pw_real box[4];           /**< around the line now: x from, to, y from, to; m */
+  bool convex;              /**< the line now, with its mirror image where it meets the axis */
 } pw_round_line;
 
 /** A place on the surface and what lies over it. */
@@ -61,6 +62,20 @@ bool pw_round_line_near(const pw_round_line *r, const pw_real *x, pw_idx cell, p
 
 /** @brief The same, true only when it lies inside. */
 bool pw_round_line_find(const pw_round_line *r, const pw_real *x, pw_idx cell, pw_real reach,
+                        pw_round_place *place);
+
+/** @brief Whether the gap of @p place, of a position that pw_round_line_near() has found, changes no
+ *  faster than by the way along its normal in any direction: gap(x + d) >= gap(x) + n . d, for a
+ *  convex line and not beyond its free end. */
+static inline bool pw_round_line_supports(const pw_round_line *r, const pw_round_place *place)
+{
+  return r->convex && place->gap != r->rounding; /* a free end says just that */
+}
+
+/** @brief Place of a position outside of a convex line, looked for along it from segment @p from on.
+ *  @return true when it lies outside of the surface: @p place then has the gap and the normal of
+ *  the nearest segment, wherever that is; false when it may lie inside, or the line is not convex. */
+bool pw_round_line_seek(const pw_round_line *r, pw_idx from, const pw_real *x,
                         pw_round_place *place);
 
 /** @brief Place of a position that was at @p arc: goes along the surface only while that is nearer,
