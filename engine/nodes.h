@@ -70,6 +70,14 @@ static inline bool pw_nodes_in_use(const pw_nodes *nodes, int f, pw_idx k)
   return nodes->in_use[((pw_off)f * nodes->nnode + k) / PW_NODE_GROUP];
 }
 
+/** @brief The first node of field @p f after the group of node @p k; at most nnode. */
+static inline pw_idx pw_nodes_group_end(const pw_nodes *nodes, int f, pw_idx k)
+{
+  const pw_off at = (pw_off)f * nodes->nnode;
+  const pw_off end = ((at + k) / PW_NODE_GROUP + 1) * PW_NODE_GROUP - at;
+  return end < nodes->nnode ? (pw_idx)end : nodes->nnode;
+}
+
 /** @brief Records [*first, *last) of the @p i-th group in use. */
 static inline void pw_nodes_group(const pw_nodes *nodes, pw_idx i, pw_off *first, pw_off *last)
 {

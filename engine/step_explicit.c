@@ -88,6 +88,13 @@ static void remap_nodes(void *ctx, int part, int parts)
   pw_nodes_remap_part(&((pw_sim *)ctx)->nodes, part, parts);
 }
 
+/* After further scatters, which no pass over blocks can wait for. */
+static void remap_apart(pw_sim *sim)
+{
+#pragma omp parallel default(none) shared(sim) num_threads(sim->threads)
+  remap_nodes(sim, omp_get_thread_num(), omp_get_num_threads());
+}
+
 /* Scatter onto cleared nodes. */
 static void scatter(pw_sim *sim, pw_block_fn block)
 {
@@ -148,7 +155,7 @@ static pw_status remap_velocity(pw_sim *sim, double *clock)
   if (!alone) {
     PW_TRY(pw_schedule_run(sim, PW_STAGE_REMAP_P2G));
     lap(sim, PW_TIMER_EFFECTS, clock);
-    remap_nodes(sim, 0, 1);
+    remap_apart(sim);
     lap(sim, PW_TIMER_NODES, clock);
   }
   PW_TRY(constrain(sim, PW_STAGE_REMAP, PW_NODE_REMAP));

@@ -6,7 +6,7 @@
 #include "engine/core/mem.h"
 
 /* The smallest blocks of a list, up to this part of its work, belong to nobody beforehand. */
-static const pw_real TAIL = 0.25;
+static const pw_real TAIL = 0.1;
 
 pw_status pw_share_create(pw_blocks *b, int threads)
 {
@@ -38,18 +38,19 @@ void pw_share_destroy(pw_blocks *b)
   b->nthread = b->share_room = 0;
 }
 
-/* Blocks in their order (rows of the grid, upwards) cut into parts of equal work. */
-static void set_homes(pw_blocks *b)
+/* Blocks of a list in its order (rows of the grid, upwards) cut into parts of equal size. */
+static void set_homes(pw_blocks *b, const pw_idx *list, pw_idx n)
 {
   pw_off all = 0, before = 0;
-  for (pw_idx k = 0; k < b->nblock; k++) {
-    all += b->share_work[k];
+  for (pw_idx l = 0; l < n; l++) {
+    all += b->share_size[list[l]];
   }
-  for (pw_idx k = 0; k < b->nblock; k++) {
-    pw_off middle = 2 * before + b->share_work[k];
+  for (pw_idx l = 0; l < n; l++) {
+    const pw_idx k = list[l];
+    pw_off middle = 2 * before + b->share_size[k];
     pw_idx t = all > 0 ? (pw_idx)((pw_real)middle / (pw_real)(2 * all) * b->share_room) : 0;
     b->share_home[k] = t < b->share_room ? t : b->share_room - 1;
-    before += b->share_work[k];
+    before += b->share_size[k];
   }
 }
 
@@ -81,6 +82,50 @@ static pw_idx least(const pw_off *sum, pw_idx n)
   return best;
 }
 
+static pw_idx most(const pw_off *sum, pw_idx n)
+{
+  pw_idx best = 0;
+  for (pw_idx t = 1; t < n; t++) {
+    best = sum[t] > sum[best] ? t : best;
+  }
+  return best;
+}
+
+/* The block of thread t whose move to another, by `gap` less busy, evens them out best; or -1. */
+static pw_idx best_move(const pw_blocks *b, pw_idx given, const pw_off *load, pw_idx t, pw_off gap)
+{
+  pw_idx best = -1;
+  pw_off gain = 0;
+  for (pw_idx i = 0; i < given; i++) {
+    const pw_idx k = b->share_order[i];
+    const pw_off rest = gap - load[k], less = rest < load[k] ? rest : load[k];
+    if (b->share_owner[k] == t && less > gain) {
+      best = k;
+      gain = less;
+    }
+  }
+  return best;
+}
+
+/* Moves from the busiest thread to the least busy one, while they differ by more than the tail can
+ * even out: a block among those of another thread has all its nodes in the wrong cache. Every move
+ * lessens the sum of squares. */
+static void even_out(pw_blocks *b, pw_idx given, const pw_off *load, pw_off tail)
+{
+  const pw_idx nt = b->share_room;
+  pw_off *sum = b->share_load;
+  for (pw_idx k = 0; k >= 0;) {
+    const pw_idx from = most(sum, nt), to = least(sum, nt);
+    const pw_off gap = sum[from] - sum[to];
+    k = gap * (nt - 1) > tail ? best_move(b, given, load, from, gap) : -1;
+    if (k >= 0) {
+      b->share_owner[k] = to;
+      sum[from] -= load[k];
+      sum[to] += load[k];
+    }
+  }
+}
+
 /* Owner of each of the first blocks in falling order; returns how many. */
 static pw_idx give_out(pw_blocks *b, pw_idx held, const pw_off *load)
 {
@@ -91,14 +136,14 @@ static pw_idx give_out(pw_blocks *b, pw_idx held, const pw_off *load)
   for (pw_idx l = 0; l < held; l++) {
     all += load[b->share_order[l]];
   }
-  const pw_off most = nt > 1 ? all - (pw_off)(TAIL * (pw_real)all) : all;
-  for (; i < held && given < most; i++) {
-    pw_idx k = b->share_order[i], t = b->share_home[k];
-    t = (sum[t] + load[k]) * nt <= all ? t : least(sum, nt);
-    b->share_owner[k] = t;
-    sum[t] += load[k];
+  const pw_off enough = nt > 1 ? all - (pw_off)(TAIL * (pw_real)all) : all;
+  for (; i < held && given < enough; i++) {
+    pw_idx k = b->share_order[i];
+    b->share_owner[k] = b->share_home[k];
+    sum[b->share_home[k]] += load[k];
     given += load[k];
   }
+  even_out(b, i, load, all - given);
   return i;
 }
 
@@ -129,10 +174,15 @@ void pw_share_balance(pw_blocks *b)
 {
   const pw_idx row = b->share_room + 1;
   pw_idx at = 0;
-  set_homes(b);
   for (pw_idx c = 0; c < b->ncolour; c++) {
     const pw_idx first = b->colour_start[c], n = b->colour_start[c + 1] - first;
-    at = divide(b, b->colour_block + first, n, b->share_size, b->share_start + (pw_off)c * row, at);
+    const pw_idx *list = b->colour_block + first;
+    set_homes(b, list, n);
+    at = divide(b, list, n, b->share_size, b->share_start + (pw_off)c * row, at);
+    for (pw_idx l = 0; l < n; l++) { /* its points stay with the thread when all blocks are run */
+      const pw_idx k = list[l];
+      b->share_home[k] = b->share_owner[k] >= 0 ? b->share_owner[k] : b->share_home[k];
+    }
   }
   at = divide(b, NULL, b->nblock, b->share_work, b->share_start + (pw_off)b->ncolour * row, at);
   b->share_start[((pw_off)b->ncolour + 1) * row] = at;

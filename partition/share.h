@@ -28,12 +28,16 @@ void pw_share_destroy(pw_blocks *b);
  * @brief Divide each colour by b->share_size and all blocks by b->share_work, which the caller has
  *        set; blocks of size 0 belong to nobody and are left out.
  *
- * Blocks in their order, cut into parts of equal work, give each a thread to begin with. Then the
- * largest first: a block stays there while the thread has not more than its part, or else goes to
- * the thread with the least so far (Graham 1969, "Bounds on multiprocessing timing anomalies",
- * rule LPT). With several threads the smallest blocks of each list, a quarter of its work, are left
- * to whoever is free first: a processor that is taken away for a while, or a block that costs more
- * than counted, then holds up the others less. Allocates nothing.
+ * The blocks of a colour in their order, cut into parts of equal size, give each a thread to begin
+ * with; among all blocks it begins with the thread of its colour. So threads hold regions of the
+ * grid, and points and nodes stay in the cache of one processor from pass to pass: a line that
+ * comes from another takes 40 ns where two share a cache and 225 where they do not (measured). Then
+ * blocks move from the busiest thread to the least busy as long as that evens them out, which
+ * leaves no thread more than the mean and one block, the bound of any list schedule (Graham 1969,
+ * "Bounds on multiprocessing timing anomalies"). With several threads the smallest blocks of each
+ * list, a tenth of its work, are left to whoever is free first: a processor that is taken away for
+ * a while, or a block that costs more than counted, then holds up the others less. Allocates
+ * nothing.
  */
 void pw_share_balance(pw_blocks *b);
 

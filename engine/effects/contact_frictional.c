@@ -28,6 +28,9 @@ static const pw_key keys[] = {
   {0}};
 /* clang-format on */
 
+/* Up to so many points a colour, and so many nodes, one thread is enough. */
+enum { FEW_POINTS = 100, FEW_NODES = 256 };
+
 /* Lowest and highest node along x and y, inclusive. */
 typedef struct window {
   pw_idx low[2], high[2];
@@ -93,35 +96,22 @@ static void set_supports(const pw_sim *sim, window *support)
   }
 }
 
-/* Nodes to which points of the master can have scattered. */
-static window master_window(const pw_sim *sim, const frictional *c)
-{
-  const pw_blocks *b = &sim->blocks;
-  window w = window_empty();
-  for (pw_idx k = 0; k < b->nblock; k++) {
-    const pw_idx *start = b->point_start + (pw_off)k * b->nbody + c->param->master;
-    if (start[1] > start[0]) {
-      window_add(&w, &c->support[k]);
-    }
-  }
-  return w;
-}
-
 /* List the nodes with mass of both bodies, in their order; returns what they span. */
 static window list_nodes(const pw_sim *sim, frictional *c)
 {
-  const pw_real *a = pw_nodes_field(&sim->nodes, sim->body[c->param->slave].field);
-  const pw_real *b = pw_nodes_field(&sim->nodes, sim->body[c->param->master].field);
-  window all = master_window(sim, c), w = window_empty();
+  const pw_nodes *nodes = &sim->nodes;
+  const int slave = sim->body[c->param->slave].field, master = sim->body[c->param->master].field;
+  const pw_real *a = pw_nodes_field(nodes, slave), *b = pw_nodes_field(nodes, master);
+  window w = window_empty();
   c->count = 0;
-  for (pw_idx j = all.low[1]; j <= all.high[1]; j++) {
-    for (pw_idx i = all.low[0]; i <= all.high[0]; i++) {
-      pw_idx k = j * sim->mesh.nodes[0] + i;
-      pw_off at = (pw_off)k * PW_NODE + PW_NODE_MASS;
-      if (b[at] > sim->mass_cut_off && a[at] > sim->mass_cut_off) {
-        c->list[c->count++] = (contact_node){.node = k};
-        window_add(&w, &(window){{i, j}, {i, j}});
-      }
+  for (pw_idx k = 0; k < nodes->nnode; k++) {
+    const pw_off at = (pw_off)k * PW_NODE + PW_NODE_MASS;
+    if (!pw_nodes_in_use(nodes, master, k)) {
+      k = pw_nodes_group_end(nodes, master, k) - 1;
+    } else if (b[at] > sim->mass_cut_off && a[at] > sim->mass_cut_off) {
+      const pw_idx i = k % sim->mesh.nodes[0], j = k / sim->mesh.nodes[0];
+      c->list[c->count++] = (contact_node){.node = k};
+      window_add(&w, &(window){{i, j}, {i, j}});
     }
   }
   return w;
@@ -146,29 +136,50 @@ static void scatter_surface(void *ctx, pw_idx block)
   }
 }
 
-/* Surface normals and stresses, only from blocks that can reach a node with both bodies. */
+/* Mark the blocks that can reach a node with both bodies; returns how many points they hold. */
+static pw_idx mark_near(const pw_sim *sim, frictional *c, const window *meeting)
+{
+  const pw_blocks *b = &sim->blocks;
+  pw_idx points = 0;
+  for (pw_idx k = 0; k < b->nblock; k++) {
+    const pw_idx *start = b->point_start + (pw_off)k * b->nbody;
+    c->near[k] = window_meets(&c->support[k], meeting);
+    points += c->near[k] ? start[b->nbody] - start[0] : 0;
+  }
+  return points;
+}
+
+/* At the nodes with both bodies. The others go on adding up what nobody reads. */
+static void clear_surfaces(const pw_sim *sim, const frictional *c)
+{
+  for (int f = 0; f < 2; f++) {
+    pw_real *surface = surface_of(sim, c, f);
+    for (pw_idx i = 0; i < c->count; i++) {
+      memset(surface + (pw_off)c->list[i].node * PW_NODE, 0, PW_NODE * sizeof *surface);
+    }
+  }
+}
+
+/* Surface normals and stresses, only from blocks that can reach a node with both bodies. Few points
+ * are sooner scattered by one thread, in the order of the colours, than the colours' barriers
+ * passed. */
 static pw_status add_surfaces(pw_sim *sim, void *ctx)
 {
   frictional *c = ctx;
-  window meeting = list_nodes(sim, c), touched = window_empty();
+  const pw_blocks *b = &sim->blocks;
+  const window meeting = list_nodes(sim, c);
   if (c->count == 0) {
     return PW_OK;
   }
-  for (pw_idx k = 0; k < sim->blocks.nblock; k++) {
-    c->near[k] = window_meets(&c->support[k], &meeting);
-    if (c->near[k]) {
-      window_add(&touched, &c->support[k]);
-    }
+  const pw_idx points = mark_near(sim, c, &meeting);
+  clear_surfaces(sim, c);
+  if (points > FEW_POINTS * b->ncolour) {
+    pw_assemble_coloured(b, sim->threads, scatter_surface, c);
+    return PW_OK;
   }
-  const size_t bytes =
-      (size_t)(touched.high[0] - touched.low[0] + 1) * PW_NODE * sizeof *c->surface;
-  for (int f = 0; f < 2; f++) {
-    for (pw_idx j = touched.low[1]; j <= touched.high[1]; j++) {
-      pw_off first = (pw_off)j * sim->mesh.nodes[0] + touched.low[0];
-      memset(surface_of(sim, c, f) + first * PW_NODE, 0, bytes);
-    }
+  for (pw_idx k = 0; k < b->nblock; k++) {
+    scatter_surface(c, b->colour_block[k]);
   }
-  pw_assemble_coloured(&sim->blocks, sim->threads, scatter_surface, c);
   return PW_OK;
 }
 
@@ -262,8 +273,8 @@ static void correct(const pw_sim *sim, const frictional *c)
   const side s[2] = {side_of(sim, c, c->param->slave), side_of(sim, c, c->param->master)};
   contact_node *list = c->list;
   const pw_idx count = c->count;
-#pragma omp parallel for default(none) shared(sim, c, s, list, count) num_threads(sim->threads)    \
-    schedule(static)
+#pragma omp parallel for default(none) shared(sim, c, s, list, count)                              \
+    num_threads(sim->threads) if (count > FEW_NODES) schedule(static)
   for (pw_idx i = 0; i < count; i++) {
     correct_node(sim, c, s, &list[i]);
   }
