@@ -84,7 +84,7 @@ const pw_key pw_scene_keys_implicit[] = {
   {"fbar", PW_KEY_CHOICE, AT(implicit.fbar), 0, 0, "increment", "none|increment|total", NULL,
    "volume change averaged over patches: not, over the step, or since the beginning"},
   {"point_rule", PW_KEY_CHOICE, AT(implicit.point_rule), 0, 0, "four",
-   "one|four|eleven_equal|eleven_keast", NULL,
+   "one|four|eleven_equal|eleven_keast|twenty", NULL,
    "places of points in a tetrahedron and their parts of its volume"},
   {"points_per", PW_KEY_CHOICE, AT(implicit.points_per), 0, 0, "element", "element|ten_node", NULL,
    "apply the rule in every element, or once in every ten-node tetrahedron"},

@@ -20,6 +20,7 @@ typedef enum pw_tet_rule {
   PW_TET_RULE_ELEVEN_EQUAL, /**< the places of Keast's rule, eleven equal parts */
   PW_TET_RULE_ELEVEN_KEAST, /**< Keast's eleven points, exact for quartic functions: the part of the
                                  centroid is negative */
+  PW_TET_RULE_TWENTY /**< an even lattice of twenty equal parts, exact for quadratic functions */
 } pw_tet_rule;
 
 /** A material with its parameters. */
@@ -80,14 +81,14 @@ pw_status pw_tet_points_let_move(pw_tet_points *p);
 /** @brief Free; a zeroed struct is accepted. */
 void pw_tet_points_destroy(pw_tet_points *p);
 
-/** @brief The rule of that name ("one", "four", "eleven_equal", "eleven_keast"). @return false: there
- *  is none. */
+/** @brief The rule of that name ("one", "four", "eleven_equal", "eleven_keast", "twenty").
+ *  @return false: there is none. */
 bool pw_tet_rule_find(const char *name, pw_tet_rule *rule);
 
 /**
  * @brief Points of a rule.
- * @param[out] place [11][4] volume coordinates
- * @param[out] part  [11] parts of the volume, adding up to 1
+ * @param[out] place [20][4] volume coordinates
+ * @param[out] part  [20] parts of the volume, adding up to 1
  * @return their number; 0 for an unknown rule.
  */
 int pw_tet_rule_points(pw_tet_rule rule, pw_real (*place)[4], pw_real *part);

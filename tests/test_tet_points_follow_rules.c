@@ -14,9 +14,13 @@ static void rules_integrate_polynomials(void **state)
   const struct {
     const char *name;
     int points, degree;
-  } rules[] = {{"one", 1, 1}, {"four", 4, 2}, {"eleven_equal", 11, 1}, {"eleven_keast", 11, 4}};
-  for (int r = 0; r < 4; r++) {
-    double place[11][4], part[11];
+  } rules[] = {{"one", 1, 1},
+               {"four", 4, 2},
+               {"eleven_equal", 11, 1},
+               {"eleven_keast", 11, 4},
+               {"twenty", 20, 2}};
+  for (int r = 0; r < 5; r++) {
+    double place[20][4], part[20];
     pw_tet_rule rule;
     assert_true(pw_tet_rule_find(rules[r].name, &rule));
     assert_int_equal(pw_tet_rule_points(rule, place, part), rules[r].points);
@@ -40,12 +44,12 @@ static void rules_integrate_polynomials(void **state)
 static void points_fill_the_mesh(void **state)
 {
   (void)state;
-  const int per[4] = {1, 4, 11, 11};
+  const int per[5] = {1, 4, 11, 11, 20};
   pw_tet_box box = test_cube(2, 2.0, 5, 10);
   pw_tet_mesh mesh = test_box_mesh(&box);
   pw_tet_material vm = test_von_mises(1e3, 0.0, "yield_radius_pa", 400.0, 0.0);
   for (int whole = 0; whole < 2; whole++) {
-    for (int rule = 0; rule < 4; rule++) {
+    for (int rule = 0; rule < 5; rule++) {
       pw_tet_fill fill = {.rule = (pw_tet_rule)rule,
                           .per_patch = whole,
                           .allow_negative = true,
