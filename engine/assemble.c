@@ -71,3 +71,12 @@ void pw_for_blocks(const pw_blocks *b, int threads, pw_block_fn fn, void *ctx)
 {
   pw_assemble_pass(b, threads, &(pw_pass){.block = fn, .any_order = true}, ctx);
 }
+
+void pw_for_listed(const pw_idx *list, pw_idx n, int threads, pw_block_fn fn, void *ctx)
+{
+#pragma omp parallel for default(none) shared(list, n, fn, ctx) num_threads(threads)               \
+    schedule(dynamic, 1)
+  for (pw_idx k = 0; k < n; k++) {
+    fn(ctx, list[k]);
+  }
+}

@@ -280,9 +280,7 @@ static pw_status balance(pw_newton *n, pw_real tolerance, pw_newton_report *repo
     PW_REQUIRE(r <= hopeless * report->residual[0] && report->count < n->options.max_iterations,
                PW_RETRY_DIVERGED, "the residual is %g after %d iterations", r, report->count - 1);
     report->iterations++;
-    if (report->count > settled_after && r <= on_the_way) {
-      settle(n, true);
-    }
+    settle(n, report->count > settled_after && r <= on_the_way);
     aim(n, tolerance, report);
     PW_TRY(solve(n));
     PW_TRY(advance(n, r, &r, report));

@@ -324,8 +324,7 @@ pw_status pw_hypo_repeat(const pw_hypo *h, pw_t6 de, pw_real dvol, pw_hypo_point
     }
     pw_real step = end - t;
     t = end;
-    if (path->kind[i] == PW_HYPO_SEPARATED) {
-      accept(&r, pw_t6_axpy(r.stress, step, k1.stress), evolve_delta(&r, step));
+    if (path->kind[i] == PW_HYPO_SEPARATED && separated(&r, &k1, step)) {
       continue;
     }
     pw_t6 stress, delta;

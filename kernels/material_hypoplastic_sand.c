@@ -48,8 +48,8 @@ static const pw_key keys[] = {
     REAL("max_substeps", PW_HYPO_MAX_SUBSTEPS, 10.0, PW_HYPO_SUBSTEP_LIMIT, "400",
          "substeps of one increment, after which the rest is taken at once"),
     REAL("step_stiffness_ratio", PW_HYPO_STEP_RATIO, 0.0, 1e3, "0",
-         "stiffness that explicit steps resolve, from m_T up to m_R, which holds within strains of "
-         "elastic_range_r only; 0: m_R"),
+         "stiffness that explicit steps resolve, from m_T (and 1.5) up to m_R, which holds within "
+         "strains of elastic_range_r only; 0: m_R"),
     {NULL, PW_KEY_REAL, 0, 0, 0, NULL, NULL, NULL, NULL},
 };
 
@@ -94,12 +94,12 @@ static pw_status check(const pw_real *v)
     PW_REQUIRE(v[PW_HYPO_R] > 0.0 && v[PW_HYPO_BETA_R] > 0.0 && v[PW_HYPO_CHI] > 0.0, PW_ERR_SCENE,
                "elastic_range_r, exponent_beta_r, exponent_chi must be positive: %g, %g, %g",
                v[PW_HYPO_R], v[PW_HYPO_BETA_R], v[PW_HYPO_CHI]);
-    PW_REQUIRE(v[PW_HYPO_STEP_RATIO] == 0.0 || (v[PW_HYPO_STEP_RATIO] >= v[PW_HYPO_M_T] &&
-                                                v[PW_HYPO_STEP_RATIO] <= v[PW_HYPO_M_R]),
-               PW_ERR_SCENE,
-               "step_stiffness_ratio = %g must lie between stiffness_ratio_m_t = %g and "
+    /* Sand that yields goes on with up to L + N, about 1.5 L. */
+    const pw_real ratio = v[PW_HYPO_STEP_RATIO], least = fmax(1.5, v[PW_HYPO_M_T]);
+    PW_REQUIRE(ratio == 0.0 || (ratio >= least && ratio <= v[PW_HYPO_M_R]), PW_ERR_SCENE,
+               "step_stiffness_ratio = %g must lie between %g, stiffness_ratio_m_t or 1.5, and "
                "stiffness_ratio_m_r = %g",
-               v[PW_HYPO_STEP_RATIO], v[PW_HYPO_M_T], v[PW_HYPO_M_R]);
+               ratio, least, v[PW_HYPO_M_R]);
   }
   return PW_OK;
 }

@@ -40,8 +40,9 @@ static const pw_key keys[] = {
    "fiftieth of the stiffest in contact counts as that"},
   {"normal_stiffness_pa_m", PW_KEY_REAL, AT(normal_stiffness_pa_m), 0, 1e20, "0", NULL, NULL,
    "contact pressure per metre of overlap; 0: by stiffness_factor from the present wave speed"},
-  {"step_frequency_max", PW_KEY_REAL, AT(step_frequency_max), 0.05, 2, "0.8", NULL, NULL,
-   "largest step times the frequency of the springs, which is bounded from above, by about twice"},
+  {"step_frequency_max", PW_KEY_REAL, AT(step_frequency_max), 0.05, 1.8, "0.8", NULL, NULL,
+   "largest step times the bound of the springs' frequency; above 1.3 where soil and springs are "
+   "known not to swing together only"},
   {"segment_m", PW_KEY_REAL, AT(segment_m), 0, 1e6, "0", NULL, NULL,
    "largest length of the master's surface segments, at most a cell; 0: a quarter of a cell"},
   {"rounding_m", PW_KEY_REAL, AT(rounding_m), 0, 1e6, "0", NULL, NULL,
@@ -196,6 +197,7 @@ static pw_status allocate(const pw_sim *sim, pw_corner *c)
   PW_TRY(pw_mem_alloc("contact sites", sites, sizeof(pw_idx), &c->found));
   PW_TRY(pw_mem_alloc("contact sites", sites, sizeof(pw_idx), &c->segment));
   PW_TRY(pw_mem_alloc("contact sums", sim->blocks.nblock, sizeof *c->sums, &c->sums));
+  PW_TRY(pw_mem_alloc("contact blocks", sim->blocks.nblock, sizeof(pw_idx), &c->near));
   PW_TRY(pw_mem_alloc("contact boxes", 4 * (pw_off)sim->blocks.nblock, sizeof(pw_idx), &c->box));
   PW_TRY(pw_mem_alloc("contact cover", c->surface.line->n, sizeof(pw_real), &c->covered));
   return pw_mem_alloc("contact stiffness", sim->mesh.nnode, sizeof(pw_real), &c->stiffness);
@@ -232,6 +234,7 @@ static void destroy(void **ctx)
     pw_mem_free(&c->found);
     pw_mem_free(&c->segment);
     pw_mem_free(&c->sums);
+    pw_mem_free(&c->near);
     pw_mem_free(&c->box);
     pw_mem_free(&c->covered);
     pw_mem_free(&c->stiffness);

@@ -67,6 +67,8 @@ typedef struct pw_corner {
   pw_idx *found;        /**< [8 points] site + 8 * point of a block, from 8 * its first point */
   pw_idx *segment;      /**< [8 points] its segment */
   pw_corner_sums *sums; /**< [nblock] */
+  pw_idx *near;         /**< [nblock] blocks whose points can reach the master in this step, */
+  pw_idx nnear;         /**< so many */
   pw_idx *box;          /**< [4 nblock] first and last node of the elements of a block along x, y */
   pw_real *covered;     /**< [line.n] area of the sites at each segment, with adhesion_gap_m; m2 */
   pw_real *stiffness;   /**< [nnode] sums at nodes; zero but within pw_corner_limit */

@@ -7,16 +7,17 @@
 
 /*
  * Steps resolve the highest frequency of the contact, as bounded from above, by step_frequency_max.
- * By 0.8, with the grid's own, resolved by at most 1.5, the step stays stable (limit 2). The bound is
- * about twice the frequency of a face that meets the master at once; the error of such an impact
- * is 1 % of its energy in the mean over the phase at which it is seen.
+ * By 0.8, with the grid's own, resolved by at most 1.5, the step stays stable (limit 2), up to 1.3 if
+ * the two are highest at the same place. The bound is exact for a site alone, and about twice the
+ * frequency of a face that meets the master at once; the error of such an impact is, by 0.8, 1 % of its
+ * energy in the mean over the phase at which it is seen.
  */
 
 /* The most that the step may be times the frequency in a step chosen by others, over what it is in a
  * step that the contact has chosen. */
 static const pw_real MARGIN = 1.875;
-/* And this at most: the true frequency is about half of the bound. */
-static const pw_real LIMIT = 3.0;
+/* And this at most, below the 2 at which a site alone becomes unstable. */
+static const pw_real LIMIT = 1.9;
 
 enum { NODES = 16 /* grid nodes that a site, or two nodes of a line, reach */ };
 

@@ -18,6 +18,9 @@ static const pw_real LEFT = 0.02;
 static const pw_real SOFTEST = 0.02;
 /* Rounding of a gap, in cells. */
 static const pw_real CLEAR = 1e-6;
+/* Error of a normal beside a vertex, where the search stays with the segment it came from as long as
+ * the other is nearer by 1e-9 of the square only (pw_interface_track). */
+static const pw_real ASKEW = 1e-4;
 /* Jumps of a site that is held are taken up to this part of half a domain. */
 static const pw_real ABSORBED = 0.15;
 
@@ -147,7 +150,7 @@ static bool all_clear(const pw_corner *c, pw_idx i, const centre *at)
   if (!at->found || any_held(&c->sim->points, i)) {
     return false;
   }
-  return at->place.gap != c->surface.rounding && at->place.gap > at->radius + margin;
+  return at->place.gap > at->radius + margin;
 }
 
 /* Whether a site is clear of a convex surface, beyond its tangent at the centre. */
@@ -155,9 +158,8 @@ static bool site_clear(const pw_corner *c, pw_idx i, const pw_domain_now *d, int
                        const centre *at)
 {
   const pw_points *p = &c->sim->points;
-  const pw_real margin = c->param->adhesion_gap_m + CLEAR * c->sim->mesh.cell;
-  if (!at->found || p->contact_arc[(pw_off)site * p->ld + i] != -1.0 ||
-      !pw_round_line_supports(&c->surface, &at->place)) {
+  const pw_real margin = c->param->adhesion_gap_m + CLEAR * c->sim->mesh.cell + ASKEW * at->radius;
+  if (!at->found || p->contact_arc[(pw_off)site * p->ld + i] != -1.0 || !c->surface.convex) {
     return false;
   }
   pw_real x[2];
@@ -205,9 +207,6 @@ static void find_in_block(void *ctx, pw_idx block)
   pw_corner_sums *sums = &c->sums[block];
   pw_idx first, last;
   slave_range(c, block, &first, &last);
-  if (first == last || !block_near(c, block)) {
-    return;
-  }
   pw_idx segment = -1;
   for (pw_idx i = first; i < last; i++) {
     find_at_point(c, i, PW_SITES * first, &segment, sums);
@@ -376,10 +375,16 @@ static void measure_block(void *ctx, pw_idx block)
 pw_status pw_corner_search(pw_corner *c)
 {
   const pw_sim *sim = c->sim;
+  c->nnear = 0;
   for (pw_idx k = 0; k < sim->blocks.nblock; k++) {
+    pw_idx first, last;
     c->sums[k] = (pw_corner_sums){.softest = PW_HUGE};
+    slave_range(c, k, &first, &last);
+    if (first < last && block_near(c, k)) {
+      c->near[c->nnear++] = k;
+    }
   }
-  pw_for_blocks(&sim->blocks, sim->threads, find_in_block, c);
+  pw_for_listed(c->near, c->nnear, sim->threads, find_in_block, c);
   c->npair = 0;
   c->slave_modulus = 0.0;
   for (pw_idx k = 0; k < sim->blocks.nblock; k++) {
@@ -391,7 +396,7 @@ pw_status pw_corner_search(pw_corner *c)
              "%d corners and edges of the slave's domains are inside the master, at most %d can be",
              c->npair, c->capacity);
   if (c->npair > 0) {
-    pw_for_blocks(&sim->blocks, sim->threads, measure_block, c);
+    pw_for_listed(c->near, c->nnear, sim->threads, measure_block, c);
   }
   return PW_OK;
 }

@@ -55,16 +55,26 @@ static pw_real half_turn(const pw_interface *line, pw_idx k)
 static void move_inwards(pw_round_line *r)
 {
   const pw_interface *line = r->line;
-  r->convex = true;
   for (pw_idx k = 0; k < line->n; k++) {
     pw_real a[2] = {0.0, 0.0}, b[2] = {0.0, 0.0};
     normals_at(line, k, a, b);
-    r->convex = r->convex && a[0] * b[1] - a[1] * b[0] > -STRAIGHT;
     pw_real by = r->rounding / pw_max(1.0 + a[0] * b[0] + a[1] * b[1], SHARPEST);
     for (int c = 0; c < 2; c++) {
       r->inner.node[k].x[c] = line->node[k].x[c] - by * (a[c] + b[c]);
     }
   }
+}
+
+/* Whether the inner line now is convex and goes all around or from axis to axis. */
+static bool is_convex(const pw_interface *line)
+{
+  bool convex = line->closed || (line->node[0].axis && line->node[line->n - 1].axis);
+  for (pw_idx k = 0; k < line->n && convex; k++) {
+    pw_real a[2] = {0.0, 0.0}, b[2] = {0.0, 0.0};
+    normals_at(line, k, a, b);
+    convex = a[0] * b[1] - a[1] * b[0] > -STRAIGHT && a[0] * b[0] + a[1] * b[1] > -1.0 + STRAIGHT;
+  }
+  return convex;
 }
 
 /* The largest rounding at which no inner segment becomes too short. */
@@ -147,6 +157,7 @@ void pw_round_line_update(pw_round_line *r, const pw_mesh *mesh)
     }
   }
   move_inwards(r);
+  r->convex = is_convex(&r->inner);
   pw_interface_locate(&r->inner, mesh);
   pw_bins_fill(&r->bins, &r->inner);
 }
@@ -187,7 +198,7 @@ static void set_place(const pw_round_line *r, pw_idx segment, const pw_pair *pai
   pw_pair own = pw_pair_project(x, a, b);
   bool over = (pair->xi <= 0.0 || pair->xi >= 1.0) && over_free_end(r, segment, pair, x);
   *place = (pw_round_place){.segment = segment,
-                            .gap = over ? r->rounding : pair->gap - r->rounding,
+                            .gap = over ? PW_HUGE : pair->gap - r->rounding,
                             .n = {pair->n[0], pair->n[1]},
                             .t = {-pair->n[1], pair->n[0]},
                             .arc = arc_of(r, segment, pair),

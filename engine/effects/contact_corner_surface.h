@@ -23,13 +23,15 @@ typedef struct pw_round_line {
   pw_real *length;          /**< [n] of the inner segments at the start; m */
   pw_real total;            /**< of a closed surface at the start; m */
   pw_real box[4];           /**< around the line now: x from, to, y from, to; m */
-  bool convex;              /**< the line now, with its mirror image where it meets the axis */
+  bool convex; /**< the inner line now, closed or with its mirror image at the axis: then
+                                 gap(x + d) >= gap(x) + n . d for any d */
 } pw_round_line;
 
 /** A place on the surface and what lies over it. */
 typedef struct pw_round_place {
   pw_idx segment;
-  pw_real gap;        /**< of the position from the surface, negative inside; m */
+  pw_real gap;        /**< of the position from the surface, negative inside; PW_HUGE beyond a free
+                           end; m */
   pw_real n[2], t[2]; /**< normal, out of the master, and tangent, along the line */
   pw_real arc;        /**< along the surface as it was at the start: marks material; m */
   pw_real xi;         /**< on the master's own segment, 0 to 1 */
@@ -63,14 +65,6 @@ bool pw_round_line_near(const pw_round_line *r, const pw_real *x, pw_idx cell, p
 /** @brief The same, true only when it lies inside. */
 bool pw_round_line_find(const pw_round_line *r, const pw_real *x, pw_idx cell, pw_real reach,
                         pw_round_place *place);
-
-/** @brief Whether the gap of @p place, of a position that pw_round_line_near() has found, changes no
- *  faster than by the way along its normal in any direction: gap(x + d) >= gap(x) + n . d, for a
- *  convex line and not beyond its free end. */
-static inline bool pw_round_line_supports(const pw_round_line *r, const pw_round_place *place)
-{
-  return r->convex && place->gap != r->rounding; /* a free end says just that */
-}
 
 /** @brief Place of a position outside of a convex line, looked for along it from segment @p from on.
  *  @return true when it lies outside of the surface: @p place then has the gap and the normal of
