@@ -63,6 +63,8 @@ PUSH = {
     "as shipped": (PENALTY, []),
     "split at 0.1 m": (PENALTY, ["contact_penalty.split_factor=2"]),
     "split at 0.15 m": (PENALTY, ["contact_penalty.split_factor=3"]),
+    "split at 0.165 m": (PENALTY, ["contact_penalty.split_factor=3.3"]),
+    "split at 0.175 m": (PENALTY, ["contact_penalty.split_factor=3.5"]),
     "split at 0.2 m": (PENALTY, ["contact_penalty.split_factor=4"]),
     "never split": (PENALTY, NO_SPLIT),
     "segments of 0.02 m": (PENALTY, ["contact_penalty.segment_m=0.02"]),
