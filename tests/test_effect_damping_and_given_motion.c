@@ -140,15 +140,20 @@ static void given_motion_needs_its_own_field(void **state)
   assert_int_equal(type->check(&scene, m), PW_ERR_SCENE);
 }
 
-/* Elastic soil between rollers, the right one of which moves into it from the start. */
-static void moving_wall(pw_scene *scene, int update)
+/* Elastic soil, 2 x 2 points in each cell of 0.1 m. */
+static void elastic_soil(pw_scene *scene, int update, const pw_real *grid, const pw_real *box)
 {
   pw_scene_default(scene);
   scene->time.cfl = 0.5;
   scene->method.update = update;
-  test_grid(scene, (pw_real[4]){0.0, 1.0, 0.0, 1.5}, 0.1);
-  int m = test_elastic(scene, 1e7, 0.3, 2000.0);
-  test_rectangle(scene, m, (pw_real[4]){0.0, 1.0, 0.0, 1.0}, 0.05);
+  test_grid(scene, grid, 0.1);
+  test_rectangle(scene, test_elastic(scene, 1e7, 0.3, 2000.0), box, 0.05);
+}
+
+/* Between rollers, the right one of which moves into it from the start. */
+static void moving_wall(pw_scene *scene, int update)
+{
+  elastic_soil(scene, update, (pw_real[4]){0.0, 1.0, 0.0, 1.5}, (pw_real[4]){0.0, 1.0, 0.0, 1.0});
   const int side[3] = {PW_SIDE_LEFT, PW_SIDE_BOTTOM, PW_SIDE_RIGHT};
   for (int k = 0; k < 3; k++) {
     pw_boundary_param *b = pw_scene_add_effect(scene, "boundary");
@@ -162,12 +167,7 @@ static void moving_wall(pw_scene *scene, int update)
 /* A free block under 100 kPa from all sides. */
 static void stressed_block(pw_scene *scene, int update)
 {
-  pw_scene_default(scene);
-  scene->time.cfl = 0.5;
-  scene->method.update = update;
-  test_grid(scene, (pw_real[4]){0.0, 2.0, 0.0, 2.0}, 0.1);
-  int m = test_elastic(scene, 1e7, 0.3, 2000.0);
-  test_rectangle(scene, m, (pw_real[4]){0.5, 1.5, 0.5, 1.5}, 0.05);
+  elastic_soil(scene, update, (pw_real[4]){0.0, 2.0, 0.0, 2.0}, (pw_real[4]){0.5, 1.5, 0.5, 1.5});
   pw_initial_stress_param *i = pw_scene_add_effect(scene, "initial_stress");
   i->body = 0;
   i->kind = PW_STRESS_UNIFORM;

@@ -3,7 +3,6 @@
  * and more, in place of that of reversals, m_R = 10, which lasts for strains of R = 5e-5 only.
  *  - the first stable step is sqrt(m_R / ratio) times as long, exactly;
  *  - sand that falls, stops and swings settles by the same way, and no energy is lost or won;
- *  - the contact's stiffness still follows m_R;
  *  - a ratio outside of m_T to m_R is refused. */
 #include "engine/sim.h"
 #include "kernels/hypoplastic.h"

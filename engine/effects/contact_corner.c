@@ -41,8 +41,8 @@ static const pw_key keys[] = {
   {"normal_stiffness_pa_m", PW_KEY_REAL, AT(normal_stiffness_pa_m), 0, 1e20, "0", NULL, NULL,
    "contact pressure per metre of overlap; 0: by stiffness_factor from the present wave speed"},
   {"step_frequency_max", PW_KEY_REAL, AT(step_frequency_max), 0.05, 1.8, "0.8", NULL, NULL,
-   "largest step times the bound of the springs' frequency; above 1.3 where soil and springs are "
-   "known not to swing together only"},
+   "largest step times the bound of the springs' frequency; above 1.3 stability is not proven: look "
+   "at the energy balance"},
   {"segment_m", PW_KEY_REAL, AT(segment_m), 0, 1e6, "0", NULL, NULL,
    "largest length of the master's surface segments, at most a cell; 0: a quarter of a cell"},
   {"rounding_m", PW_KEY_REAL, AT(rounding_m), 0, 1e6, "0", NULL, NULL,

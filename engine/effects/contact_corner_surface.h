@@ -23,8 +23,8 @@ typedef struct pw_round_line {
   pw_real *length;          /**< [n] of the inner segments at the start; m */
   pw_real total;            /**< of a closed surface at the start; m */
   pw_real box[4];           /**< around the line now: x from, to, y from, to; m */
-  bool convex; /**< the inner line now, closed or with its mirror image at the axis: then
-                                 gap(x + d) >= gap(x) + n . d for any d */
+  /** The inner line is convex now, closed or from axis to axis: gap(x + d) >= gap(x) + n . d. */
+  bool convex;
 } pw_round_line;
 
 /** A place on the surface and what lies over it. */
