@@ -49,7 +49,10 @@ pw_status pw_rates_create(pw_sim *sim)
   r->done_below = -1;
   PW_TRY(pw_mem_alloc("rates: levels", nblock, sizeof *r->level, &r->level));
   PW_TRY(pw_mem_alloc("rates: next levels", nblock, sizeof *r->next, &r->next));
-  PW_TRY(pw_mem_alloc("rates: pinned", nblock, sizeof *r->pinned, &r->pinned));
+  PW_TRY(pw_mem_alloc("rates: contacts", nblock, sizeof *r->longest, &r->longest));
+  for (pw_idx k = 0; k < nblock; k++) {
+    r->longest[k] = PW_HUGE;
+  }
   for (int l = 0; l <= r->levels; l++) {
     if (l > 0) {
       PW_TRY(pw_nodes_create(sim->nodes.nnode, sim->nodes.nfield, &r->held[l]));
@@ -75,7 +78,7 @@ void pw_rates_destroy(pw_sim *sim)
     }
     pw_mem_free(&r->level);
     pw_mem_free(&r->next);
-    pw_mem_free(&r->pinned);
+    pw_mem_free(&r->longest);
   }
   pw_mem_free(&sim->rates);
 }
@@ -129,6 +132,10 @@ void pw_rates_begin(pw_sim *sim, int k, int n)
   r->done_below = -1;
   for (int l = 0; l <= r->levels; l++) {
     r->span[l] = (l <= r->begun ? 0.0 : r->span[l]) + sim->dt;
+    if (l <= r->begun) {
+      const pw_idx steps = steps_of(r->first, l), left = n - k;
+      r->ahead[l] = (pw_real)(steps < left ? steps : left) * sim->dt;
+    }
   }
 }
 
@@ -273,11 +280,11 @@ static pw_idx level_for(const pw_sim *sim, pw_idx block, pw_idx first)
   /* Points are about to change blocks; an empty block does not know who comes. */
   const bool settled = !sim->sort_needed && sim->blocks.share_size[block] > 0;
   pw_idx level = 0;
-  while (level < r->levels && !r->pinned[block] && settled) {
+  while (level < r->levels && settled) {
     const pw_idx steps = steps_of(first, level + 1);
     const pw_real step = sim->dt_next * (pw_real)steps, part = steps <= now ? 1.0 : RISE;
     if (steps > sim->scene.method.step_ratio_max || step > sim->scene.time.dt_max_s ||
-        step * rate > part * sim->scene.time.cfl) {
+        step * rate > part * sim->scene.time.cfl || step > part * r->longest[block]) {
       break;
     }
     level++;
@@ -318,9 +325,9 @@ void pw_rates_choose(pw_sim *sim)
   for (pw_idx k = 0; k < nblock; k++) {
     r->next[k] = level_for(sim, k, first);
     changed = changed || r->next[k] != r->level[k];
+    r->longest[k] = PW_HUGE;
   }
   memcpy(r->level, r->next, (size_t)nblock * sizeof *r->level);
-  memset(r->pinned, 0, (size_t)nblock * sizeof *r->pinned);
   r->first = first;
   if (changed) {
     pw_rates_renew(sim);

@@ -20,8 +20,9 @@
  *    short steps at cfl 0.5; in twos it grows less, in fours and eights by 11 %; not at cfl 0.25;
  *  - at the end of a cycle all blocks are at the same time.
  *
- * Levels follow from the block's fastest signal with the margin of time.cfl; blocks in reach of a
- * corner contact's master take short steps. Mixed time integration: Belytschko, Yen, Mullen,
+ * Levels follow from the block's fastest signal with the margin of time.cfl, and from what its
+ * contacts resolve (engine/effects/contact_corner.h): their forces, too, are those at the start of the
+ * block's own step and stay until its end. Mixed time integration: Belytschko, Yen, Mullen,
  * Comput. Methods Appl. Mech. Engrg 17/18 (1979); on grids of material points own work.
  */
 #ifndef PW_ENGINE_RATES_H
@@ -33,15 +34,16 @@ enum { PW_MAX_LEVELS = 4 };
 
 /** Context; sim->rates points to it. */
 typedef struct pw_rates {
-  int levels;    /**< highest level there is room for */
-  pw_idx first;  /**< short steps of level 1; each further level takes twice as many */
-  pw_idx *level; /**< [nblock] */
-  pw_idx *next;  /**< [nblock] scratch: levels to come */
-  bool *pinned;  /**< [nblock] set by contacts in each step: short steps next time */
+  int levels;       /**< highest level there is room for */
+  pw_idx first;     /**< short steps of level 1; each further level takes twice as many */
+  pw_idx *level;    /**< [nblock] */
+  pw_idx *next;     /**< [nblock] scratch: levels to come */
+  pw_real *longest; /**< [nblock] steps that contacts let a block take in the next cycle; s */
   pw_nodes held[PW_MAX_LEVELS + 1]; /**< by level from 1 on: what its blocks gave to the grid */
   pw_blocks set[PW_MAX_LEVELS + 1]; /**< blocks of levels up to this, divided among threads;
                                             borrows all but the division */
   pw_real span[PW_MAX_LEVELS + 1];  /**< since the start of the level's step; s */
+  pw_real ahead[PW_MAX_LEVELS + 1]; /**< length of the level's step, as planned at its start; s */
   int begun;                        /**< levels up to this start in the present short step */
   int done_below;                   /**< levels above this and */
   int done;                         /**< up to this end in it */
@@ -81,6 +83,26 @@ static inline const pw_blocks *pw_rates_starting(const pw_sim *sim)
 static inline const pw_blocks *pw_rates_ending(const pw_sim *sim)
 {
   return sim->rates ? &sim->rates->set[sim->rates->done] : &sim->blocks;
+}
+
+/** @brief Whether a block starts a step of its own now. */
+static inline bool pw_rates_starts(const pw_sim *sim, pw_idx block)
+{
+  return !sim->rates || sim->rates->level[block] <= sim->rates->begun;
+}
+
+/** @brief Length of the step that a block has started last, as planned then; s. */
+static inline pw_real pw_rates_ahead(const pw_sim *sim, pw_idx block)
+{
+  return sim->rates ? sim->rates->ahead[sim->rates->level[block]] : sim->dt;
+}
+
+/** @brief A contact resolves steps of a block up to @p dt; s. */
+static inline void pw_rates_limit(const pw_sim *sim, pw_idx block, pw_real dt)
+{
+  if (sim->rates) {
+    sim->rates->longest[block] = pw_min(sim->rates->longest[block], dt);
+  }
 }
 
 /** @brief Whether the step of a block ends now. */

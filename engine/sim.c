@@ -340,6 +340,7 @@ static pw_status build(pw_sim *sim)
   pw_for_blocks(&sim->blocks, sim->threads, pw_block_wave_speed, sim);
   PW_TRY(pw_update_collect(sim));
   sim->material = (pw_material_counts){0};
+  sim->updates = 0;
   PW_TRY(pw_quad_steps_create(sim));
   for (pw_idx i = 0; i < sim->points.n; i++) {
     sim->mass += sim->points.mass[i];

@@ -50,6 +50,7 @@ typedef struct pw_report {
   pw_real bound_scatter, bound_gather; /**< most that the threads can be faster than one, by the
                                             division of the blocks (partition/share.h) */
   pw_energy energy;
+  pw_off point_updates; /**< steps times points, less what method.step_ratio_max leaves out */
   pw_off sorts, domains_limited, domains_rebuilt, domains_reshaped, vertices_clamped;
   pw_material_counts material;
 } pw_report;

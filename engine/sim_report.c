@@ -73,6 +73,7 @@ void pw_sim_report(const pw_sim *sim, pw_report *out)
                      .wall_s = sim->wall,
                      .bytes_per_point = pw_points_bytes_per_point(&sim->points),
                      .energy = sim->energy,
+                     .point_updates = sim->updates,
                      .sorts = sim->sorts,
                      .domains_limited = sim->limited,
                      .domains_rebuilt = sim->rebuilt,
@@ -178,7 +179,7 @@ static pw_status archive_numbers(pw_sim *sim, pw_archive *ar)
       &sim->external_gross, &sim->released,   &sim->surplus};
   pw_off *const count[] = {&sim->step,     &sim->sorts,   &sim->limited, &sim->rebuilt,
                            &sim->reshaped, &sim->clamped, &m->substeps,  &m->rhs,
-                           &m->rejected,   &m->forced,    &m->cut_off};
+                           &m->rejected,   &m->forced,    &m->cut_off,   &sim->updates};
   enum { NREAL = sizeof real / sizeof real[0], NCOUNT = sizeof count / sizeof count[0] };
   pw_real r[NREAL];
   pw_off c[NCOUNT];

@@ -102,6 +102,7 @@ struct pw_sim {
   pw_real stage_wall[PW_TIMER_COUNT];
   pw_real wall;
   pw_off sorts, limited, rebuilt, reshaped, clamped;
+  pw_off updates; /**< of points: steps times points, less what slow blocks leave out */
   pw_material_counts material;
   pw_real *limit;   /**< [n by id] half diagonal allowed to each domain; m, or on a graded grid in
                          cells where it is; NULL without CPDI */

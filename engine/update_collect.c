@@ -63,6 +63,7 @@ pw_status pw_update_collect(pw_sim *sim)
       continue;
     }
     sim->energy.strain_work += sim->measure * s->strain_work;
+    sim->updates += sim->blocks.share_size[k];
     sim->limited += s->limited;
     sim->rebuilt += s->rebuilt;
     sim->reshaped += s->reshaped;

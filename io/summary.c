@@ -110,6 +110,7 @@ static json_t *energy_json(const pw_energy *e, bool *bad)
 static json_t *counters_json(const pw_report *r, bool *bad)
 {
   json_t *object = json_object();
+  put(object, "point_updates", json_integer(r->point_updates), bad);
   put(object, "sorts", json_integer(r->sorts), bad);
   put(object, "domains_limited", json_integer(r->domains_limited), bad);
   put(object, "domains_rebuilt", json_integer(r->domains_rebuilt), bad);

@@ -112,18 +112,11 @@ static pw_real next_step(const pw_sim *sim, pw_corner *c)
   return c->npair == 0 && last > 0.0 && last < sim->dt_next ? growth * last : limit;
 }
 
-/* Blocks that can come into contact before their next step take the shortest ones: a spring must
- * see its site move. */
-static void pin_blocks(const pw_corner *c)
+static void finish_step(const pw_sim *sim, pw_corner *c)
 {
-  const pw_sim *sim = c->sim;
-  const pw_mesh *m = &sim->mesh;
-  const pw_real *box = c->surface.box;
-  for (pw_idx k = 0; sim->rates && k < sim->blocks.nblock; k++) {
-    const pw_idx *to = c->box + 4 * (pw_off)k; /* its own reach and a cell more */
-    const bool across = pw_mesh_node_x(m, to[0]) <= box[1] && pw_mesh_node_x(m, to[1]) >= box[0];
-    sim->rates->pinned[k] = across && pw_mesh_node_y(m, to[2] * m->nodes[0]) <= box[3] &&
-                            pw_mesh_node_y(m, to[3] * m->nodes[0]) >= box[2];
+  c->last_dt = sim->dt;
+  for (pw_idx k = 0; k < sim->blocks.nblock; k++) {
+    c->begun[k] = pw_rates_starts(sim, k) ? sim->time : c->begun[k];
   }
 }
 
@@ -132,12 +125,11 @@ static pw_status add_forces(pw_sim *sim, void *ctx)
   pw_corner *c = ctx;
   pw_real spring, dissipated;
   bind_step(sim, c);
-  pin_blocks(c);
   pw_contact_tally_begin(&c->tally);
   PW_TRY(pw_corner_search(c));
   sim->dt_contact = next_step(sim, c);
   pw_corner_forces(c, &spring, &dissipated);
-  c->last_dt = sim->dt;
+  finish_step(sim, c);
   pw_contact_tally_end(&c->tally, sim->measure, sim->dt);
   sim->energy.spring += sim->measure * spring;
   sim->energy.contact += sim->measure * dissipated;
@@ -194,11 +186,15 @@ static pw_status allocate(const pw_sim *sim, pw_corner *c)
   /* All sites of a small body may be in contact, of a large one hardly one in eight. */
   c->capacity = (pw_idx)(sites < n + 4096 ? sites : n + 4096);
   PW_TRY(pw_mem_alloc("contact pairs", c->capacity, sizeof *c->pair, &c->pair));
+  if (sim->rates) {
+    PW_TRY(pw_mem_alloc("contact pairs", c->capacity, sizeof *c->last, &c->last));
+  }
   PW_TRY(pw_mem_alloc("contact sites", sites, sizeof(pw_idx), &c->found));
   PW_TRY(pw_mem_alloc("contact sites", sites, sizeof(pw_idx), &c->segment));
   PW_TRY(pw_mem_alloc("contact sums", sim->blocks.nblock, sizeof *c->sums, &c->sums));
   PW_TRY(pw_mem_alloc("contact blocks", sim->blocks.nblock, sizeof(pw_idx), &c->near));
   PW_TRY(pw_mem_alloc("contact boxes", 4 * (pw_off)sim->blocks.nblock, sizeof(pw_idx), &c->box));
+  PW_TRY(pw_mem_alloc("contact steps", sim->blocks.nblock, sizeof(pw_real), &c->begun));
   PW_TRY(pw_mem_alloc("contact cover", c->surface.line->n, sizeof(pw_real), &c->covered));
   return pw_mem_alloc("contact stiffness", sim->mesh.nnode, sizeof(pw_real), &c->stiffness);
 }
@@ -231,6 +227,8 @@ static void destroy(void **ctx)
     pw_interface_destroy(&c->own);
     pw_round_line_destroy(&c->surface);
     pw_mem_free(&c->pair);
+    pw_mem_free(&c->last);
+    pw_mem_free(&c->begun);
     pw_mem_free(&c->found);
     pw_mem_free(&c->segment);
     pw_mem_free(&c->sums);
@@ -273,7 +271,6 @@ static void results(const pw_sim *sim, void *ctx, pw_record *out)
 
 static pw_status archive(pw_sim *sim, void *ctx, pw_archive *ar)
 {
-  (void)sim;
   pw_corner *c = ctx;
   pw_real value[6] = {c->master_modulus, c->centre_max, c->softest,
                       c->stiffest,       c->offset_max, c->last_dt};
@@ -283,6 +280,9 @@ static pw_status archive(pw_sim *sim, void *ctx, pw_archive *ar)
   }
   PW_TRY(ar->real(ar, "contact_corner/numbers", value, 6));
   PW_TRY(ar->offset(ar, "contact_corner/reduced", &c->reduced, 1));
+  if (sim->rates) {
+    PW_TRY(ar->real(ar, "contact_corner/begun", c->begun, sim->blocks.nblock));
+  }
   c->master_modulus = value[0];
   c->centre_max = value[1];
   c->softest = value[2];

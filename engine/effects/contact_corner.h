@@ -8,6 +8,10 @@
  * each, (3) limit the stiffness to what the step resolves, (4) springs and friction, forces to
  * the slave's grid field, (5) forces to the master. (1), (2) and (4) run over blocks of points, in
  * (4) by colours; everything summed over blocks is summed in block order.
+ *
+ * Blocks that take several short steps at once (engine/rates.h) are looked at when theirs begins.
+ * Their pairs and forces stay until it ends, as their stresses do; the master, which moves in
+ * every short step, meets the same forces as long.
  */
 #ifndef PW_EFFECTS_CONTACT_CORNER_H
 #define PW_EFFECTS_CONTACT_CORNER_H
@@ -25,6 +29,7 @@ typedef struct pw_corner_pair {
   int site;   /**< corner or edge's middle: engine/domain_sites.h */
   bool fresh; /**< was not in contact in the last step */
   bool waits; /**< new, and too stiff for this step: no force yet */
+  pw_real dt; /**< step of its block; s */
   pw_round_place place;
   pw_real overlap;   /**< what of the gap makes force, >= 0; m */
   pw_real advance;   /**< way along the surface since the last step; m */
@@ -40,10 +45,12 @@ typedef struct pw_corner_pair {
 
 /** Sums and extremes of the sites of a block. */
 typedef struct pw_corner_sums {
-  pw_idx count; /**< sites found; their pairs begin at start */
+  pw_idx count; /**< sites found; their pairs begin at start, */
   pw_idx start;
+  pw_idx kept;                /**< or, in a step that the block has begun before, did here */
   pw_real spring, dissipated; /**< J per radian or metre, this step */
   pw_real rate;               /**< largest square of a point's frequency, from above; 1/s2 */
+  pw_real soon;               /**< until a site has closed by what a step may leave unseen; s */
   pw_real deepest;            /**< of a site, >= 0; m */
   pw_real centre;             /**< of a point's centre, >= 0; m */
   pw_real softest, stiffest;  /**< stiffness per area; Pa/m */
@@ -63,6 +70,7 @@ typedef struct pw_corner {
   pw_real master_modulus; /**< density times squared wave speed of the master; 0: rigid; Pa */
   pw_idx capacity;        /**< pairs */
   pw_corner_pair *pair;   /**< [capacity] */
+  pw_corner_pair *last;   /**< [capacity] of the last short step; NULL without rates */
   pw_idx npair;
   pw_idx *found;        /**< [8 points] site + 8 * point of a block, from 8 * its first point */
   pw_idx *segment;      /**< [8 points] its segment */
@@ -72,6 +80,7 @@ typedef struct pw_corner {
   pw_idx *box;          /**< [4 nblock] first and last node of the elements of a block along x, y */
   pw_real *covered;     /**< [line.n] area of the sites at each segment, with adhesion_gap_m; m2 */
   pw_real *stiffness;   /**< [nnode] sums at nodes; zero but within pw_corner_limit */
+  pw_real *begun;       /**< [nblock] time at which the block was looked at last; s */
   /* Of the present step: */
   pw_real *slave_rec, *master_rec;
   bool given;            /**< the master's motion is prescribed */

@@ -5,6 +5,7 @@
 #include <math.h>
 
 #include "engine/assemble.h"
+#include "engine/rates.h"
 
 /* Most force along the surface. Domains lie against it as unevenly as they are large: a part of the
  * sites carries all of the pressure, the others are off it by a part of a domain. Friction does not
@@ -74,7 +75,7 @@ static void pull_along(const pw_contact_corner_param *p, const pw_corner_pair *q
   }
 }
 
-static void push(pw_corner *c, pw_corner_pair *q, pw_corner_sums *sums)
+static void push(pw_corner *c, pw_corner_pair *q, pw_real *held, pw_corner_sums *sums)
 {
   pw_points *p = &c->sim->points;
   const pw_off at = (pw_off)q->site * p->ld + q->point;
@@ -94,14 +95,18 @@ static void push(pw_corner *c, pw_corner_pair *q, pw_corner_sums *sums)
                   pw_spring_energy(q->stiffness, p->contact_slip[at]);
   pw_domain_now d = pw_domain_of(p, q->point, c->surface.line->axi);
   pw_site_scatter(p, &d, q->site, c->sim->mesh.nodes[0], q->force, c->slave_rec);
+  if (held) { /* adds it again in the other short steps of the block's own */
+    pw_site_scatter(p, &d, q->site, c->sim->mesh.nodes[0], q->force, held);
+  }
 }
 
 static void push_block(void *ctx, pw_idx block)
 {
   pw_corner *c = ctx;
   pw_corner_sums *sums = &c->sums[block];
+  pw_real *own = pw_rates_records(c->sim, block, c->sim->body[c->param->slave].field);
   for (pw_idx k = 0; k < sums->count; k++) {
-    push(c, &c->pair[sums->start + k], sums);
+    push(c, &c->pair[sums->start + k], own == c->slave_rec ? NULL : own, sums);
   }
 }
 
@@ -145,7 +150,7 @@ void pw_corner_forces(pw_corner *c, pw_real *spring, pw_real *dissipated)
     if (c->param->adhesion_gap_m > 0.0) {
       share_surface(c);
     }
-    pw_assemble_coloured(&c->sim->blocks, c->sim->threads, push_block, c);
+    pw_assemble_coloured(pw_rates_starting(c->sim), c->sim->threads, push_block, c);
     push_master(c);
   }
   *spring = *dissipated = 0.0;

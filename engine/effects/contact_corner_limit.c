@@ -5,6 +5,8 @@
 
 #include <math.h>
 
+#include "engine/rates.h"
+
 /*
  * Steps resolve the highest frequency of the contact, as bounded from above, by step_frequency_max.
  * By 0.8, with the grid's own, resolved by at most 1.5, the step stays stable (limit 2), up to 1.3 if
@@ -18,6 +20,9 @@
 static const pw_real MARGIN = 1.875;
 /* And this at most, below the 2 at which a site alone becomes unstable. */
 static const pw_real LIMIT = 1.9;
+
+/* Most that the own step of a block that takes several short ones may be times its pairs' frequency. */
+static const pw_real RESOLVE_LONG = 1.2;
 
 enum { NODES = 16 /* grid nodes that a site, or two nodes of a line, reach */ };
 
@@ -175,13 +180,56 @@ static void soften(pw_corner *c, pw_corner_pair *q, pw_real part)
   q->density *= part;
 }
 
+/* Whether points of the master lie in a block. */
+static bool holds_master(const pw_corner *c, pw_idx block)
+{
+  const pw_blocks *b = &c->sim->blocks;
+  const pw_idx *start = b->point_start + (pw_off)block * b->nbody + c->param->master;
+  return start[1] > start[0];
+}
+
+/* Steps that blocks may take: with pairs those that resolve them and let them close by little; the short ones where there are none
+ * yet, since a spring must see its site move, and where the master has points. */
+static void limit_blocks(const pw_corner *c, pw_real shift)
+{
+  const pw_real resolve = pw_min(c->param->step_frequency_max, RESOLVE_LONG);
+  for (pw_idx i = 0; c->sim->rates && i < c->nnear; i++) {
+    const pw_corner_sums *s = &c->sums[c->near[i]];
+    pw_real rate = 0.0;
+    for (pw_idx k = s->start; k < s->start + s->count; k++) {
+      rate = pw_max(rate, c->pair[k].rate + shift);
+    }
+    pw_rates_limit(c->sim, c->near[i], rate > 0.0 ? pw_min(resolve / sqrt(rate), s->soon) : 0.0);
+  }
+  for (pw_idx k = 0; c->sim->rates && !c->structure && k < c->sim->blocks.nblock; k++) {
+    if (holds_master(c, k)) {
+      pw_rates_limit(c->sim, k, 0.0);
+    }
+  }
+}
+
+/* What pairs that begin a step have too much. */
+static void soften_pairs(pw_corner *c, pw_real shift, pw_real limit2)
+{
+  for (pw_idx i = 0; i < c->nnear; i++) {
+    const pw_corner_sums *s = &c->sums[c->near[i]];
+    for (pw_idx k = s->start; k < s->start + s->count; k++) {
+      pw_corner_pair *q = &c->pair[k];
+      const pw_real step2 = (q->rate + shift) * q->dt * q->dt;
+      if (pw_rates_starts(c->sim, c->near[i]) && step2 > limit2) {
+        soften(c, q, limit2 / step2);
+      }
+    }
+  }
+}
+
 pw_real pw_corner_limit(pw_corner *c)
 {
   if (c->npair == 0) {
+    limit_blocks(c, 0.0);
     return 0.0;
   }
   const pw_real resolve = c->param->step_frequency_max, limit = pw_min(MARGIN * resolve, LIMIT);
-  const pw_real dt2 = c->sim->dt * c->sim->dt, limit2 = limit * limit;
   pw_real rate = slave_rate(c), shift = 0.0;
   if (c->structure && (!c->given || c->structure->kind == PW_BODY_ROD)) { /* a rod yields */
     shift = structure_rate(c);
@@ -189,10 +237,7 @@ pw_real pw_corner_limit(pw_corner *c)
   } else if (!c->given) {
     rate += rates_on_grid(c, 1, c->master_rec);
   }
-  for (pw_idx k = 0; k < c->npair; k++) {
-    if ((c->pair[k].rate + shift) * dt2 > limit2) {
-      soften(c, &c->pair[k], limit2 / ((c->pair[k].rate + shift) * dt2));
-    }
-  }
+  limit_blocks(c, shift);
+  soften_pairs(c, shift, limit * limit);
   return rate > 0.0 ? resolve / sqrt(rate) : 0.0;
 }

@@ -5,6 +5,7 @@
 #include <math.h>
 
 #include "engine/assemble.h"
+#include "engine/rates.h"
 
 /* A new contact may be this many times as deep as its closing motion explains. */
 static const pw_real EXPLAINED = 1.1;
@@ -21,6 +22,9 @@ static const pw_real CLEAR = 1e-6;
 /* Error of a normal beside a vertex, where the search stays with the segment it came from as long as
  * the other is nearer by 1e-9 of the square only (pw_interface_track). */
 static const pw_real ASKEW = 1e-4;
+/* Part of half a domain by which site and surface may close in a step of the site's block: its force
+ * stays meanwhile. */
+static const pw_real UNSEEN = 0.02;
 /* Jumps of a site that is held are taken up to this part of half a domain. */
 static const pw_real ABSORBED = 0.15;
 
@@ -205,9 +209,11 @@ static void find_in_block(void *ctx, pw_idx block)
 {
   pw_corner *c = ctx;
   pw_corner_sums *sums = &c->sums[block];
-  pw_idx first, last;
+  pw_idx first, last, segment = -1;
+  if (!pw_rates_starts(c->sim, block)) {
+    return;
+  }
   slave_range(c, block, &first, &last);
-  pw_idx segment = -1;
   for (pw_idx i = first; i < last; i++) {
     find_at_point(c, i, PW_SITES * first, &segment, sums);
   }
@@ -228,9 +234,18 @@ static pw_real stiffness_of(const pw_corner *c, const pw_domain_now *d)
   return c->param->stiffness_factor * modulus / pw_domain_half_size(p, d);
 }
 
-/* How far site and surface have closed in a step, by the velocities at its start. The surface's way
- * is that of the last step; a site that waited was found in a longer one, which must not count. */
-static pw_real closing(const pw_corner *c, const pw_corner_pair *q, const pw_domain_now *d)
+/* Short steps since a block was looked at. */
+static pw_real steps_since(const pw_corner *c, pw_idx block)
+{
+  const pw_sim *sim = c->sim;
+  return sim->rates && c->last_dt > 0.0 ? (sim->time - c->begun[block]) / c->last_dt : 1.0;
+}
+
+/* How far site and surface have closed in so many short steps, by the velocities at the start of this
+ * one. The surface's way is that of the last; a site that waited was found in a longer one, which
+ * must not count. */
+static pw_real closing(const pw_corner *c, const pw_corner_pair *q, const pw_domain_now *d,
+                       pw_real steps)
 {
   const pw_sim *sim = c->sim;
   const pw_interface *line = c->surface.line;
@@ -244,16 +259,17 @@ static pw_real closing(const pw_corner *c, const pw_corner_pair *q, const pw_dom
                    v);
   for (int k = 0; k < 2; k++) {
     pw_real master = (1.0 - q->place.xi) * a->du[k] + q->place.xi * b->du[k];
-    sum += q->place.n[k] * (part * master - sim->dt * v[k]);
+    sum += q->place.n[k] * steps * (part * master - sim->dt * v[k]);
   }
   return pw_max(sum, 0.0);
 }
 
 /* Offset of a new contact: what of its overlap the motion of a step does not explain makes no force
  * until it is worked out by sliding, so that no energy comes from overlap at rest. */
-static pw_real first_offset(const pw_corner *c, const pw_corner_pair *q, const pw_domain_now *d)
+static pw_real first_offset(const pw_corner *c, const pw_corner_pair *q, const pw_domain_now *d,
+                            pw_real steps)
 {
-  return pw_min(q->place.gap + EXPLAINED * closing(c, q, d), 0.0);
+  return pw_min(q->place.gap + EXPLAINED * closing(c, q, d, steps), 0.0);
 }
 
 /* Offset of one that lasts: follows the site on its way out; where it is more than can be left,
@@ -292,7 +308,7 @@ static void set_springs(const pw_corner *c, pw_corner_pair *q, const pw_domain_n
   q->density = q->fresh ? modulus : pw_max(old, modulus);
   q->stiffness = q->density * q->area;
   if (q->fresh) {
-    offset = first_offset(c, q, d);
+    offset = first_offset(c, q, d, steps_since(c, (pw_idx)(sums - c->sums)));
     q->overlap = pw_max(offset - gap, 0.0);
   } else {
     const pw_real held = p->contact_offset[at], jump = jump_of(p, q);
@@ -315,7 +331,8 @@ static pw_corner_pair measure_site(const pw_corner *c, pw_idx at, const pw_domai
   pw_corner_pair q = {.point = c->found[at] / PW_SITES,
                       .site = c->found[at] % PW_SITES,
                       .share = 1.0,
-                      .relax = 1.0};
+                      .relax = 1.0,
+                      .dt = pw_rates_ahead(c->sim, (pw_idx)(sums - c->sums))};
   pw_real x[2], arc = p->contact_arc[(pw_off)q.site * p->ld + q.point];
   pw_site_place(d, q.site, x);
   pw_round_line_place(&c->surface, c->segment[at], x, &q.place);
@@ -343,6 +360,22 @@ static pw_real centre_depth(const pw_corner *c, const pw_corner_pair *q, const p
   return pw_max(-gap, 0.0);
 }
 
+/* Time in which a pair closes by what a step may leave unseen, by the velocities of surface and point;
+ * s. */
+static pw_real time_to_close(const pw_corner *c, const pw_corner_pair *q, const pw_domain_now *d)
+{
+  const pw_points *p = &c->sim->points;
+  const pw_interface *line = c->surface.line;
+  const pw_interface_node *a = &line->node[q->place.segment];
+  const pw_interface_node *b = &line->node[pw_interface_next(line, q->place.segment)];
+  pw_real speed = 0.0;
+  for (int k = 0; k < 2 && c->last_dt > 0.0; k++) {
+    const pw_real way = (1.0 - q->place.xi) * a->du[k] + q->place.xi * b->du[k];
+    speed += q->place.n[k] * (way / c->last_dt - p->v[k * p->ld + q->point]);
+  }
+  return speed > 0.0 ? UNSEEN * pw_domain_half_size(p, d) / speed : PW_HUGE;
+}
+
 /* Square of the frequency of pairs [k, next), all of one point, from above. */
 static pw_real point_rate(const pw_corner *c, pw_idx k, pw_idx next, const pw_domain_now *d)
 {
@@ -354,36 +387,71 @@ static pw_real point_rate(const pw_corner *c, pw_idx k, pw_idx next, const pw_do
   return rate;
 }
 
+/* The pairs of a step that goes on. */
+static void keep_pairs(pw_corner *c, const pw_corner_sums *sums)
+{
+  for (pw_idx k = 0; k < sums->count; k++) {
+    c->pair[sums->start + k] = c->last[sums->kept + k];
+    c->pair[sums->start + k].rate = 0.0;
+  }
+}
+
 static void measure_block(void *ctx, pw_idx block)
 {
   pw_corner *c = ctx;
   pw_corner_sums *sums = &c->sums[block];
   pw_idx first, last;
   slave_range(c, block, &first, &last);
+  if (!pw_rates_starts(c->sim, block)) {
+    keep_pairs(c, sums);
+    return;
+  }
   for (pw_idx k = 0; k < sums->count;) {
     const pw_idx i = c->found[PW_SITES * first + k] / PW_SITES, start = sums->start + k;
     pw_domain_now d = pw_domain_of(&c->sim->points, i, c->surface.line->axi);
     pw_real stiffness = stiffness_of(c, &d);
     for (; k < sums->count && c->found[PW_SITES * first + k] / PW_SITES == i; k++) {
       c->pair[sums->start + k] = measure_site(c, PW_SITES * first + k, &d, stiffness, sums);
-      sums->centre = pw_max(sums->centre, centre_depth(c, &c->pair[sums->start + k], &d));
+      const pw_corner_pair *q = &c->pair[sums->start + k];
+      sums->centre = pw_max(sums->centre, centre_depth(c, q, &d));
+      sums->soon = pw_min(sums->soon, time_to_close(c, q, &d));
     }
     sums->rate = pw_max(sums->rate, point_rate(c, start, sums->start + k, &d));
+  }
+}
+
+/* Blocks that start a step and can reach the master, and those that hold pairs since theirs began;
+ * all others have none. */
+static void list_blocks(pw_corner *c)
+{
+  const pw_sim *sim = c->sim;
+  c->nnear = 0;
+  for (pw_idx k = 0; k < sim->blocks.nblock; k++) {
+    pw_corner_sums *sums = &c->sums[k];
+    if (pw_rates_starts(sim, k)) {
+      pw_idx first, last;
+      *sums = (pw_corner_sums){.softest = PW_HUGE, .soon = PW_HUGE};
+      slave_range(c, k, &first, &last);
+      if (first < last && block_near(c, k)) {
+        c->near[c->nnear++] = k;
+      }
+    } else if (sums->count > 0) {
+      sums->kept = sums->start;
+      sums->dissipated = 0.0;
+      c->near[c->nnear++] = k;
+    }
+  }
+  if (sim->rates) {
+    pw_corner_pair *swap = c->last;
+    c->last = c->pair;
+    c->pair = swap;
   }
 }
 
 pw_status pw_corner_search(pw_corner *c)
 {
   const pw_sim *sim = c->sim;
-  c->nnear = 0;
-  for (pw_idx k = 0; k < sim->blocks.nblock; k++) {
-    pw_idx first, last;
-    c->sums[k] = (pw_corner_sums){.softest = PW_HUGE};
-    slave_range(c, k, &first, &last);
-    if (first < last && block_near(c, k)) {
-      c->near[c->nnear++] = k;
-    }
-  }
+  list_blocks(c);
   pw_for_listed(c->near, c->nnear, sim->threads, find_in_block, c);
   c->npair = 0;
   c->slave_modulus = 0.0;

@@ -1,0 +1,118 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Corner contact of blocks that take several short steps at once (method.step_ratio_max). A soft bar
+ * meets a free rigid block of its own mass while a stiff bar elsewhere, 5.7 times as fast, sets the
+ * short step.
+ *  - The blocks in contact take long steps as far as their springs are resolved, short ones when
+ *    these are stiff;
+ *  - bar and block have the momentum of the start, to round-off: both meet the
+ *    same force, whoever of them moves;
+ *  - what is passed on is that of short steps for all, and no energy comes up. */
+#include "engine/effects/contact_corner.h"
+#include "engine/rates.h"
+#include "engine/sim_report.h"
+#include "tests/contact_helpers.h"
+
+enum { SOFT, STIFF, BLOCK, RATIO = 4 };
+
+static const pw_real SPEED = 0.2, CELL = 0.025, END = 0.12;
+
+static pw_sim *scene(int ratio, pw_real factor)
+{
+  static pw_scene s; /* large */
+  pw_scene_default(&s);
+  s.geometry = PW_PLANE;
+  s.method.block_elements = 8;
+  s.method.step_ratio_max = ratio;
+  s.time.cfl = 0.4;
+  test_grid(&s, (pw_real[]){0.0, 2.0, 0.0, 0.5}, CELL);
+  const int soft = test_elastic(&s, 5e5, 0.0, 1000.0), stiff = test_elastic(&s, 16e6, 0.0, 1000.0);
+  test_rectangle(&s, soft, (pw_real[]){0.2, 1.0, 0.0, 0.1}, 0.5 * CELL)->velocity_m_s[0] = SPEED;
+  test_rectangle(&s, stiff, (pw_real[]){0.2, 0.4, 0.35, 0.45}, 0.5 * CELL);
+  test_rectangle(&s, soft, (pw_real[]){1.005, 1.805, 0.0, 0.1}, 0.5 * CELL)->kind = PW_BODY_RIGID;
+  test_add_contact(&s, TEST_CORNER, BLOCK, SOFT, 0.0, 0.0, CELL);
+  pw_contact_corner_param *c = (void *)pw_scene_find_effect(&s, "contact_corner");
+  c->stiffness_factor = factor;
+  return test_sim(&s, 1);
+}
+
+static pw_real momentum(const pw_sim *sim)
+{
+  const pw_structure *block = sim->structure_of[BLOCK];
+  pw_real sum = block->rigid.mass * block->rigid.v[0];
+  for (pw_idx i = 0; i < sim->points.n; i++) {
+    sum += sim->points.body[i] == SOFT ? sim->points.mass[i] * sim->points.v[i] : 0.0;
+  }
+  return sum;
+}
+
+/* Keep the lowest and highest level of the blocks that hold pairs. */
+static void see_levels(const pw_sim *sim, pw_idx *low, pw_idx *high)
+{
+  const pw_corner *c = pw_sim_effect_ctx(sim, "contact_corner");
+  for (pw_idx k = 0; k < sim->blocks.nblock; k++) {
+    const pw_idx level = sim->rates->level[k];
+    if (c->sums[k].count > 0) {
+      *low = *low < 0 || level < *low ? level : *low;
+      *high = level > *high ? level : *high;
+    }
+  }
+}
+
+typedef struct {
+  pw_real lost; /* largest change of the momentum, over that of the start */
+  pw_real passed,
+      energy;       /* momentum of the block, over all there is; most energy, over the first */
+  pw_idx low, high; /* levels in contact in the middle of the impact */
+} outcome;
+
+static outcome run(int ratio, pw_real factor)
+{
+  pw_sim *sim = scene(ratio, factor);
+  const pw_real start = momentum(sim), first = pw_kinetic_energy(sim);
+  outcome out = {.low = -1, .high = -1};
+  while (sim->time < END) {
+    assert_ok(pw_sim_step(sim, 0.0));
+    out.lost = pw_max(out.lost, fabs(momentum(sim) - start) / start);
+    const pw_energy *e = &sim->energy;
+    out.energy = pw_max(out.energy, (e->kinetic + e->strain_work + e->spring + e->contact) / first);
+    if (sim->rates && sim->time > 0.3 * END && sim->time < 0.6 * END) {
+      see_levels(sim, &out.low, &out.high);
+    }
+  }
+  out.passed = sim->structure_of[BLOCK]->rigid.mass * sim->structure_of[BLOCK]->rigid.v[0] / start;
+  print_message(
+      "ratio %d, stiffness %g: %.5f of the momentum passed, %.1e lost, most energy %.5f of the "
+      "first, levels in contact %d to %d, %lld short steps\n",
+      ratio, factor, out.passed, out.lost, out.energy, out.low, out.high, (long long)sim->step);
+  pw_sim_destroy(&sim);
+  return out;
+}
+
+static void the_same_momentum_passes(void **state)
+{
+  (void)state;
+  const outcome one = run(1, 0.2), four = run(RATIO, 0.2);
+  assert_true(four.low > 0 && four.high == 2);
+  assert_near(four.passed, one.passed, 0.01 * one.passed);
+  assert_true(one.passed > 0.5 && four.energy <= 1.01);
+  assert_true(one.lost < 1e-10 && four.lost < 1e-10);
+}
+
+static void stiff_springs_are_resolved(void **state)
+{
+  (void)state;
+  const outcome one = run(1, 50.0), four = run(RATIO, 50.0);
+  assert_int_equal(four.high, 0);
+  assert_near(four.passed, one.passed, 0.01 * one.passed);
+  assert_true(four.energy <=
+              one.energy + 0.005); /* springs found late: test_contact_corner_limits */
+}
+
+int main(void)
+{
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(the_same_momentum_passes),
+      cmocka_unit_test(stiff_springs_are_resolved),
+  };
+  return cmocka_run_group_tests(tests, NULL, NULL);
+}
