@@ -4,14 +4,16 @@
 #include <math.h>
 #include <string.h>
 
-static const pw_real hopeless = 1e8;     /* a residual this far above the first ends a part */
-static const pw_real on_the_way = 1e-3;  /* residual of a solution that only leads to another */
-static const int settled_after = 2;      /* iterations that choose the substeps of materials */
-static const pw_real sufficient = 0.999; /* part of the residual a searched correction may leave */
-static const pw_real loosest = 1e-3;     /* part that an iterative solve may leave, at most */
-static const pw_real tightest = 1e-12;   /* and at least */
-static const pw_real negligible = 1e-9;  /* part of the load that may act on nothing */
-static const pw_real light = 1e-6;       /* the same on nodes that hardly have material */
+static const pw_real hopeless = 1e8;    /* a residual this far above the first ends a part */
+static const pw_real on_the_way = 1e-3; /* residual of a solution that only leads to another */
+static const int settled_after = 2;     /* iterations that choose the substeps of materials */
+static const pw_real slack = 0.8;       /* part of the slope a correction may leave */
+static const pw_real sufficient = 0.5;  /* part of the residual that is good in any case */
+static const pw_real shortest = 0.1;    /* of a correction, over the part tried before */
+static const pw_real loosest = 1e-3;    /* part that an iterative solve may leave, at most */
+static const pw_real tightest = 1e-12;  /* and at least */
+static const pw_real negligible = 1e-9; /* part of the load that may act on nothing */
+static const pw_real light = 1e-6;      /* the same on nodes that hardly have material */
 
 static bool dynamic(const pw_newton *n)
 {
@@ -228,29 +230,54 @@ static pw_status start_part(pw_newton *n, const pw_newton_load *load, const pw_r
   return PW_OK;
 }
 
-/* Add the correction, all of it or, in a line search, the largest half, quarter ... that leaves less
- * than there was and turns no element inside out; the residual after it. */
-static pw_status advance(pw_newton *n, pw_real before, pw_real *after, pw_newton_report *report)
+/* What is out of balance, along the correction: the slope of the potential, where there is one. */
+static pw_real slope(const pw_newton *n)
 {
+  pw_real sum = 0.0;
+  for (pw_idx i = 0; i < n->system.csr->n; i++) {
+    sum += n->right[i] * n->delta[i];
+  }
+  return sum;
+}
+
+/* The next part of a correction to try: to where the slope, taken as a line, ends. */
+static pw_real shorten(pw_real part, pw_real start, pw_real end)
+{
+  const pw_real zero = start > 0.0 && end < 0.0 ? start / (start - end) : 0.5;
+  return part * pw_max(shortest, pw_min(0.5, zero));
+}
+
+/* Add the correction or, in a line search, a part of it that takes enough off the slope or off the
+ * residual (H. Matthies, G. Strang, Int. J. Numer. Meth. Engng 14 (1979) 1613-1626); r: the residual
+ * before and after. Residuals alone mislead: large turns pass through larger ones. */
+static pw_status advance(pw_newton *n, pw_real *r, pw_newton_report *report)
+{
+  const int most = n->options.line_search;
+  const pw_real before = *r, start = slope(n);
   pw_real part = 1.0;
-  for (int k = 0; k < n->options.line_search; k++, part *= 0.5, report->searches++) {
+  for (int k = 0; k < most; k++, report->searches++) {
     memcpy(n->tried, n->u, n->dofs * sizeof *n->u);
     add_correction(n, part);
     const pw_status s = evaluate(n, true);
-    if (s < 0) {
+    if (s < 0 || (s > 0 && n->approachable)) { /* an approach is cheaper than halves */
       return s;
     }
+    pw_real end = start;
     if (s == PW_OK) {
-      *after = residual(n);
-      if (*after <= pw_max(sufficient * before, n->floor)) {
+      *r = residual(n);
+      end = slope(n);
+      if (*r <= pw_max(sufficient * before, n->floor) || fabs(end) <= slack * fabs(start)) {
         return PW_OK;
       }
     }
     memcpy(n->u, n->tried, n->dofs * sizeof *n->u);
+    part = shorten(part, start, end);
   }
+  PW_REQUIRE(most == 0, PW_RETRY_DIVERGED,
+             "at a residual of %g no part of a correction helps, down to %g", before, part);
   add_correction(n, part);
   PW_TRY(evaluate(n, true));
-  *after = residual(n);
+  *r = residual(n);
   return PW_OK;
 }
 
@@ -283,7 +310,7 @@ static pw_status balance(pw_newton *n, pw_real tolerance, pw_newton_report *repo
     settle(n, report->count > settled_after && r <= on_the_way);
     aim(n, tolerance, report);
     PW_TRY(solve(n));
-    PW_TRY(advance(n, r, &r, report));
+    PW_TRY(advance(n, &r, report));
   }
 }
 
@@ -364,8 +391,9 @@ pw_status pw_newton_solve_part(pw_newton *n, const pw_newton_load *load, const p
                                pw_newton_report *report)
 {
   report->count = 0;
+  n->approachable = n->options.approach > 0 && !dynamic(n) && !n->system.inertia && !load->move;
   const pw_status s = solve_in_one(n, load, t, report);
-  if (s <= 0 || n->options.approach == 0 || dynamic(n) || n->system.inertia || load->move) {
+  if (s <= 0 || !n->approachable) {
     return s;
   }
   PW_TRY(approach(n, load, t, report));

@@ -24,6 +24,7 @@ struct pw_newton {
   pw_real *right, *delta; /* [dofs] by equation */
   pw_real floor;          /* residual that rounding may leave */
   bool has_rest;
+  bool approachable; /* the part at hand, should it fail */
   pw_newton_watcher watcher;
   pw_tet_rates rates; /* in dynamics */
   pw_mechanism mechanism;

@@ -39,8 +39,8 @@
    "0: it is cut at once"}, \
   {"cut_driven", PW_KEY_BOOL, AT(implicit.cut_driven), 0, 0, "false", NULL, NULL, \
    "cut steps also where nodes are driven and the mesh is put back in between"}, \
-  {"line_search", PW_KEY_INT, AT(implicit.line_search), 0, 20, "0", NULL, NULL, \
-   "halvings of a correction that leaves more out of balance; 0: none"}
+  {"line_search", PW_KEY_INT, AT(implicit.line_search), 0, 20, "4", NULL, NULL, \
+   "parts of a correction to try, the whole one first, after which a step fails; 0: the whole one"}
 
 #define KEYS_OF_SOLVER \
   {"solver", PW_KEY_CHOICE, AT(implicit.solver), 0, 0, "automatic", \

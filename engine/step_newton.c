@@ -10,6 +10,8 @@
 #include "engine/scene_solid.h"
 #include "engine/tet_follow.h"
 
+static const pw_real rigid = 1e-9; /* change of lengths by a motion that only turns */
+
 pw_newton_options pw_newton_defaults(void)
 {
   return (pw_newton_options){.tolerance = 1e-9,
@@ -17,6 +19,7 @@ pw_newton_options pw_newton_defaults(void)
                              .max_cuts = 10,
                              .from_previous = true,
                              .approach = 4,
+                             .line_search = 4,
                              .volume_limit = 10.0,
                              .mechanisms = PW_MECHANISMS_WARN};
 }
@@ -223,6 +226,44 @@ static pw_status find_mechanisms(pw_newton *n, pw_newton_report *report)
   return PW_OK;
 }
 
+/* Where the mesh turns without a change of shape, what it turns with goes on along with it: so does the
+ * guess for the part that follows. */
+static void turn_previous(pw_newton *n, const pw_motion *was)
+{
+  const pw_motion *is = &n->model->mesh->motion;
+  const size_t l = n->dofs / 3;
+  pw_real turn[9], off = 0.0;
+  for (size_t i = 0; i < 9; i++) {
+    const pw_real *row = is->map + i - i % 3, *column = was->back + i % 3;
+    turn[i] =
+        was->moved ? row[0] * column[0] + row[1] * column[3] + row[2] * column[6] : is->map[i];
+  }
+  for (size_t i = 0; i < 9; i++) {
+    const pw_real *a = turn + i - i % 3, *b = turn + 3 * (i % 3);
+    off = pw_max(off, fabs(a[0] * b[0] + a[1] * b[1] + a[2] * b[2] - (i % 4 == 0 ? 1.0 : 0.0)));
+  }
+  for (size_t a = 0; off <= rigid && a < l; a++) {
+    const pw_real v[3] = {n->previous[a], n->previous[l + a], n->previous[2 * l + a]};
+    for (size_t c = 0; c < 3; c++) {
+      n->previous[c * l + a] = turn[3 * c] * v[0] + turn[3 * c + 1] * v[1] + turn[3 * c + 2] * v[2];
+    }
+  }
+}
+
+/* Put the mesh where it belongs. */
+static pw_status move_mesh(pw_newton *n, const pw_newton_load *load, pw_real t1)
+{
+  if (!load->move) {
+    return PW_OK;
+  }
+  const pw_motion was = n->model ? n->model->mesh->motion : (pw_motion){.moved = false};
+  PW_TRY(load->move(load->ctx, n->model, t1));
+  if (n->model && n->model->mesh->motion.moved) {
+    turn_previous(n, &was);
+  }
+  return PW_OK;
+}
+
 /* A converged part becomes the past. */
 static pw_status finish_part(pw_newton *n, const pw_newton_load *load, const pw_real *t)
 {
@@ -237,7 +278,7 @@ static pw_status finish_part(pw_newton *n, const pw_newton_load *load, const pw_
   if (load->converged) {
     load->converged(load->ctx, n->model, t[1]);
   }
-  return load->move ? load->move(load->ctx, n->model, t[1]) : PW_OK;
+  return move_mesh(n, load, t[1]);
 }
 
 /* The error record names the residuals of the last attempt. */

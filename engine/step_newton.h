@@ -41,9 +41,11 @@ typedef struct pw_newton_options {
   pw_real tolerance;    /**< of the residual; 1e-9 */
   int max_iterations;   /**< of a part, at most PW_NEWTON_HISTORY; 20 */
   int max_cuts;         /**< halvings of a part in a row; 10 */
-  bool from_previous;   /**< start from the increment before, scaled, where that converged */
+  bool from_previous;   /**< start from the increment before, scaled and turned with the mesh, where
+                                 that converged */
   int approach;         /**< halvings of the way to a part that fails; 0: cut at once; 4 */
-  int line_search;      /**< halvings of a correction that leaves a larger residual; 0: none; 0 */
+  int line_search;      /**< parts of a correction to try, the whole one first, after which the
+                                 step counts as failed; 0: the whole one, whatever it leaves; 4 */
   bool cut_driven;      /**< cut also where nodes are driven and the mesh is put back */
   pw_real volume_limit; /**< a part in which an element with points changes its volume by more
                                  than this factor counts as failed; 10 */
@@ -81,7 +83,7 @@ typedef struct pw_newton_report {
   int parts;      /**< converged parts: 1 without cuts */
   int cuts;       /**< failures that halved a part */
   int approaches; /**< parts that were approached */
-  int searches;   /**< halvings of corrections */
+  int searches;   /**< parts of corrections that have not helped */
   int iterations; /**< solutions of all parts, failed ones too */
   int count;      /**< residuals of the last part, those of a failed part after a failure */
   pw_real residual[PW_NEWTON_HISTORY];

@@ -56,6 +56,7 @@ typedef struct run {
   pw_t6 de;
   pw_real size, log_dvol, log_specific; /* |dE|, ln of the volume ratio, ln(1 + e) at the start */
   pw_hypo_point now;
+  bool swept; /* delta has turned along de and stays there */
   pw_hypo_path *path;
   pw_material_counts counts;
 } run;
@@ -82,7 +83,7 @@ static pw_clay_rates stage(run *r, pw_hypo_point *at, pw_real t)
     at->stress = pw_hypo_limit(&r->c->limits, at->stress);
   }
   pw_clay_factors k = pw_clay_factors_of(r->c, at->stress, r->log_specific + t * r->log_dvol);
-  return pw_clay_rates_of(r->c, &k, at->delta, r->de, r->size, r->c->intergranular);
+  return pw_clay_rates_of(r->c, &k, at->delta, r->de, r->size, r->c->intergranular && !r->swept);
 }
 
 static pw_t6 clip(const pw_clay *c, pw_t6 delta)
@@ -114,6 +115,22 @@ static pw_real attempt(run *r, const pw_clay_rates *k1, pw_real t, pw_real step,
   pw_real on_stress = pw_t6_norm(err) / (pw_t6_norm(end->stress) + 1000.0);
   pw_real on_delta = r->c->intergranular ? pw_t6_norm(miss) / r->c->r : 0.0;
   return sixth * (on_delta > on_stress ? on_delta : on_stress);
+}
+
+/** Within a hundredth of the tolerance of full mobilisation, delta = R dE/|dE| solves its rate and the
+ *  rates become those without intergranular strain, as in the sand. Its decay, followed on, would keep
+ *  substeps at the limit of stability: they would enlarge rounding, and the tangent without bound. */
+static void sweep(run *r)
+{
+  const pw_clay *c = r->c;
+  if (!c->intergranular || r->swept || r->size <= PW_HYPO_SWEEP * c->r) {
+    return;
+  }
+  const pw_t6 full = pw_t6_scale(c->r / r->size, r->de);
+  if (pw_t6_norm(pw_t6_axpy(full, -1.0, r->now.delta)) <= 0.01 * c->tolerance * c->r) {
+    r->now.delta = full;
+    r->swept = true;
+  }
 }
 
 static void accept(run *r, const pw_hypo_point *end, pw_real t, int kind)
@@ -182,6 +199,11 @@ static void advance(run *r, pw_real t, pw_real end)
     t = last ? end : t + step;
     r->counts.forced += forced;
     accept(r, &to, t, PW_HYPO_RUNGE_KUTTA);
+    const bool before = r->swept;
+    sweep(r);
+    if (r->path && r->swept && !before) {
+      r->path->kind[r->path->n - 1] = PW_HYPO_SWEPT;
+    }
   }
 }
 
@@ -248,6 +270,10 @@ pw_status pw_clay_repeat(const pw_clay *c, pw_t6 de, pw_real dvol, pw_hypo_point
     if (path->kind[i] != PW_HYPO_SEPARATED || !separated(&r, &k1, t, end)) {
       (void)attempt(&r, &k1, t, end - t, &to);
       accept(&r, &to, end, PW_HYPO_RUNGE_KUTTA);
+    }
+    if (path->kind[i] == PW_HYPO_SWEPT && r.size > 0.0) {
+      r.now.delta = pw_t6_scale(c->r / r.size, de);
+      r.swept = true;
     }
     t = end;
   }

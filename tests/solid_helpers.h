@@ -99,7 +99,7 @@ static inline pw_status solid_start(solid *s, pw_fbar fbar, int threads, const p
       .mesh = &s->mesh, .fill = &fill, .fbar = fbar, .threads = threads, .follower = s->follower};
   pw_newton_options options = pw_newton_defaults();
   options.approach = s->approach > 0 ? s->approach : options.approach;
-  options.line_search = s->line_search;
+  options.line_search = s->line_search > 0 ? s->line_search : options.line_search;
   PW_TRY(pw_tet_model_create(&setup, &s->model));
   s->nnode = s->mesh.tets.nnode;
   s->x = s->mesh.tets.x;
