@@ -59,10 +59,10 @@ static void see_levels(const pw_sim *sim, pw_idx *low, pw_idx *high)
 }
 
 typedef struct {
-  pw_real lost; /* largest change of the momentum, over that of the start */
-  pw_real passed,
-      energy;       /* momentum of the block, over all there is; most energy, over the first */
-  pw_idx low, high; /* levels in contact in the middle of the impact */
+  pw_real lost;       /* largest change of the momentum, over that of the start */
+  pw_real passed;     /* momentum of the block at the end, likewise */
+  pw_real most, last; /* energy, the largest and at the end, over that of the start */
+  pw_idx low, high;   /* levels in contact in the middle of the impact */
 } outcome;
 
 static outcome run(int ratio, pw_real factor)
@@ -74,18 +74,28 @@ static outcome run(int ratio, pw_real factor)
     assert_ok(pw_sim_step(sim, 0.0));
     out.lost = pw_max(out.lost, fabs(momentum(sim) - start) / start);
     const pw_energy *e = &sim->energy;
-    out.energy = pw_max(out.energy, (e->kinetic + e->strain_work + e->spring + e->contact) / first);
+    out.last = (e->kinetic + e->strain_work + e->spring + e->contact) / first;
+    out.most = pw_max(out.most, out.last);
     if (sim->rates && sim->time > 0.3 * END && sim->time < 0.6 * END) {
       see_levels(sim, &out.low, &out.high);
     }
   }
   out.passed = sim->structure_of[BLOCK]->rigid.mass * sim->structure_of[BLOCK]->rigid.v[0] / start;
   print_message(
-      "ratio %d, stiffness %g: %.5f of the momentum passed, %.1e lost, most energy %.5f of the "
-      "first, levels in contact %d to %d, %lld short steps\n",
-      ratio, factor, out.passed, out.lost, out.energy, out.low, out.high, (long long)sim->step);
+      "ratio %d, stiffness %g: %.5f of the momentum passed, %.1e lost; energy %.5f at most, "
+      "%.5f at the end; levels in contact %d to %d, %lld short steps\n",
+      ratio, factor, out.passed, out.lost, out.most, out.last, out.low, out.high,
+      (long long)sim->step);
   pw_sim_destroy(&sim);
   return out;
+}
+
+/* A spring that is found a step late holds energy that nothing has given it, until it lets go. */
+static void check(const outcome *one, const outcome *four)
+{
+  assert_near(four->passed, one->passed, 0.01 * one->passed);
+  assert_true(one->passed > 0.5 && one->lost < 1e-10 && four->lost < 1e-10);
+  assert_true(four->most <= one->most + 0.01 && four->last <= one->last + 0.005);
 }
 
 static void the_same_momentum_passes(void **state)
@@ -93,9 +103,7 @@ static void the_same_momentum_passes(void **state)
   (void)state;
   const outcome one = run(1, 0.2), four = run(RATIO, 0.2);
   assert_true(four.low > 0 && four.high == 2);
-  assert_near(four.passed, one.passed, 0.01 * one.passed);
-  assert_true(one.passed > 0.5 && four.energy <= 1.01);
-  assert_true(one.lost < 1e-10 && four.lost < 1e-10);
+  check(&one, &four);
 }
 
 static void stiff_springs_are_resolved(void **state)
@@ -103,9 +111,7 @@ static void stiff_springs_are_resolved(void **state)
   (void)state;
   const outcome one = run(1, 50.0), four = run(RATIO, 50.0);
   assert_int_equal(four.high, 0);
-  assert_near(four.passed, one.passed, 0.01 * one.passed);
-  assert_true(four.energy <=
-              one.energy + 0.005); /* springs found late: test_contact_corner_limits */
+  check(&one, &four);
 }
 
 int main(void)

@@ -24,6 +24,10 @@ static const pw_real LIMIT = 1.9;
 /* Most that the own step of a block that takes several short ones may be times its pairs' frequency. */
 static const pw_real RESOLVE_LONG = 1.2;
 
+/* Part of the way between a block without pairs and the surface that the surface may go in the block's
+ * own step. */
+static const pw_real CLEAR_WAY = 0.25;
+
 enum { NODES = 16 /* grid nodes that a site, or two nodes of a line, reach */ };
 
 /* Grid nodes of one side of a pair and the sizes of their shares in its motion. */
@@ -78,11 +82,11 @@ static void spread(const pw_corner *c, int side, bool clear)
 }
 
 /* Add to each pair's rate the square of its frequency on the grid of one side, from above: sums of
- * stiffness over masses (Gershgorin). Returns the largest. */
+ * stiffness over masses (Gershgorin). The largest that was added. */
 static pw_real rates_on_grid(pw_corner *c, int side, const pw_real *rec)
 {
   handle h = {.n = 0};
-  pw_real largest = 0.0;
+  pw_real most = 0.0;
   spread(c, side, false);
   for (pw_idx k = 0; k < c->npair; k++) {
     pw_real rate = 0.0;
@@ -92,39 +96,51 @@ static pw_real rates_on_grid(pw_corner *c, int side, const pw_real *rec)
       rate += mass > c->sim->mass_cut_off ? h.share[j] * c->stiffness[h.node[j]] / mass : 0.0;
     }
     c->pair[k].rate += rate;
-    largest = pw_max(largest, rate);
+    most = pw_max(most, rate);
   }
   spread(c, side, true);
-  return largest;
+  return most;
 }
 
-/* Springs on the nodes of a rod: sums over masses. */
-static pw_real rod_rate(const pw_corner *c)
+/* Node of a rod below a place of its surface; @p part: of the way to the next. */
+static pw_idx rod_node(const pw_structure *s, const pw_round_place *q, pw_real *part)
+{
+  const pw_rod *rod = &s->rod;
+  const pw_real y0 = s->line_x0[2 * q->segment + 1];
+  const pw_real y1 = s->line_x0[2 * pw_interface_next(&s->line, q->segment) + 1];
+  pw_real at = ((1.0 - q->xi) * y0 + q->xi * y1 - rod->y0) / rod->length;
+  at = pw_min(pw_max(at, 0.0), (pw_real)(rod->n - 1));
+  const pw_idx j = (pw_idx)at < rod->n - 1 ? (pw_idx)at : rod->n - 2;
+  *part = at - (pw_real)j;
+  return j;
+}
+
+/* Add the same of the nodes of a rod; the largest that was added. */
+static pw_real add_rod_rates(pw_corner *c)
 {
   const pw_structure *s = c->structure;
   const pw_rod *rod = &s->rod;
-  pw_real *sum = rod->scratch, rate = 0.0;
+  pw_real *sum = rod->scratch, part, most = 0.0;
   for (pw_idx k = 0; k < rod->n; k++) {
     sum[k] = 0.0;
   }
   for (pw_idx k = 0; k < c->npair; k++) {
-    const pw_round_place *q = &c->pair[k].place;
-    const pw_real y0 = s->line_x0[2 * q->segment + 1];
-    const pw_real y1 = s->line_x0[2 * pw_interface_next(&s->line, q->segment) + 1];
-    pw_real at = ((1.0 - q->xi) * y0 + q->xi * y1 - rod->y0) / rod->length;
-    at = pw_min(pw_max(at, 0.0), (pw_real)(rod->n - 1));
-    pw_idx j = (pw_idx)at < rod->n - 1 ? (pw_idx)at : rod->n - 2;
-    sum[j] += c->pair[k].stiffness * (1.0 - (at - (pw_real)j));
-    sum[j + 1] += c->pair[k].stiffness * (at - (pw_real)j);
+    const pw_idx j = rod_node(s, &c->pair[k].place, &part);
+    sum[j] += c->pair[k].stiffness * (1.0 - part);
+    sum[j + 1] += c->pair[k].stiffness * part;
   }
-  for (pw_idx k = 0; k < rod->n; k++) {
-    rate = pw_max(rate, sum[k] / rod->mass[k]);
+  for (pw_idx k = 0; k < c->npair; k++) {
+    const pw_idx j = rod_node(s, &c->pair[k].place, &part);
+    const pw_real rate =
+        (1.0 - part) * sum[j] / rod->mass[j] + part * sum[j + 1] / rod->mass[j + 1];
+    c->pair[k].rate += rate;
+    most = pw_max(most, rate);
   }
-  return rate;
+  return most;
 }
 
-/* All springs on a rigid body, that shifts and turns. */
-static pw_real rigid_rate(const pw_corner *c)
+/* The same of a rigid body, that shifts and turns under all springs. */
+static pw_real add_rigid_rate(pw_corner *c)
 {
   const pw_structure *s = c->structure;
   pw_real sum = 0.0, turn = 0.0;
@@ -136,27 +152,44 @@ static pw_real rigid_rate(const pw_corner *c)
     turn += c->pair[k].stiffness * (dx * dx + dy * dy);
   }
   bool turns = !s->axi && s->rigid.inertia[2] > 0.0;
-  return sum / s->rigid.mass + (turns ? turn / s->rigid.inertia[2] : 0.0);
+  const pw_real rate = sum / s->rigid.mass + (turns ? turn / s->rigid.inertia[2] : 0.0);
+  for (pw_idx k = 0; k < c->npair; k++) {
+    c->pair[k].rate += rate;
+  }
+  return rate;
 }
 
-static pw_real structure_rate(const pw_corner *c)
+/* The same of what the master yields; the largest that was added. */
+static pw_real add_master_rates(pw_corner *c)
 {
-  return c->structure->kind == PW_BODY_ROD ? rod_rate(c) : rigid_rate(c);
+  if (c->structure && c->structure->kind == PW_BODY_ROD) { /* yields although it is driven */
+    return add_rod_rates(c);
+  }
+  if (c->given) {
+    return 0.0;
+  }
+  return c->structure ? add_rigid_rate(c) : rates_on_grid(c, 1, c->master_rec);
 }
 
-/* The slave's frequency is below two bounds: by the masses of the grid's nodes, and by those of the
- * points alone. */
-static pw_real slave_rate(pw_corner *c)
+/*
+ * Squares of the pairs' frequencies, from above; the largest. With springs k_p between sums a_p of the
+ * velocities of nodes with masses m_j, the highest is below the largest row of A M^-1 A^T K: its parts
+ * of slave and master add up at each pair. The slave's alone is also below that of its points by
+ * themselves.
+ */
+static pw_real find_rates(pw_corner *c)
 {
-  pw_real by_points = 0.0;
+  pw_real by_points = 0.0, rate = 0.0;
   for (pw_idx k = 0; k < c->sim->blocks.nblock; k++) {
     by_points = pw_max(by_points, c->sums[k].rate);
   }
-  pw_real by_nodes = rates_on_grid(c, 0, c->slave_rec);
+  rates_on_grid(c, 0, c->slave_rec);
+  const pw_real most = by_points + add_master_rates(c);
   for (pw_idx k = 0; k < c->npair; k++) {
-    c->pair[k].rate = pw_min(c->pair[k].rate, by_points);
+    c->pair[k].rate = pw_min(c->pair[k].rate, most);
+    rate = pw_max(rate, c->pair[k].rate);
   }
-  return pw_min(by_points, by_nodes);
+  return rate;
 }
 
 /*
@@ -188,18 +221,26 @@ static bool holds_master(const pw_corner *c, pw_idx block)
   return start[1] > start[0];
 }
 
-/* Steps that blocks may take: with pairs those that resolve them and let them close by little; the short ones where there are none
- * yet, since a spring must see its site move, and where the master has points. */
-static void limit_blocks(const pw_corner *c, pw_real shift)
+/* Step that a block may take: with pairs one that resolves them and lets them close by little; without,
+ * one in which the surface stays clear of it, since a spring must see its site move. */
+static pw_real longest_step(const pw_corner *c, const pw_corner_sums *s)
 {
   const pw_real resolve = pw_min(c->param->step_frequency_max, RESOLVE_LONG);
+  pw_real rate = 0.0;
+  for (pw_idx k = s->start; k < s->start + s->count; k++) {
+    rate = pw_max(rate, c->pair[k].rate);
+  }
+  if (s->count > 0) {
+    return pw_min(resolve / sqrt(rate), s->soon);
+  }
+  return c->speed > 0.0 ? CLEAR_WAY * s->clear / c->speed : (s->clear > 0.0 ? PW_HUGE : 0.0);
+}
+
+/* Blocks in reach; those with points of the master take short steps. */
+static void limit_blocks(const pw_corner *c)
+{
   for (pw_idx i = 0; c->sim->rates && i < c->nnear; i++) {
-    const pw_corner_sums *s = &c->sums[c->near[i]];
-    pw_real rate = 0.0;
-    for (pw_idx k = s->start; k < s->start + s->count; k++) {
-      rate = pw_max(rate, c->pair[k].rate + shift);
-    }
-    pw_rates_limit(c->sim, c->near[i], rate > 0.0 ? pw_min(resolve / sqrt(rate), s->soon) : 0.0);
+    pw_rates_limit(c->sim, c->near[i], longest_step(c, &c->sums[c->near[i]]));
   }
   for (pw_idx k = 0; c->sim->rates && !c->structure && k < c->sim->blocks.nblock; k++) {
     if (holds_master(c, k)) {
@@ -209,13 +250,13 @@ static void limit_blocks(const pw_corner *c, pw_real shift)
 }
 
 /* What pairs that begin a step have too much. */
-static void soften_pairs(pw_corner *c, pw_real shift, pw_real limit2)
+static void soften_pairs(pw_corner *c, pw_real limit2)
 {
   for (pw_idx i = 0; i < c->nnear; i++) {
     const pw_corner_sums *s = &c->sums[c->near[i]];
     for (pw_idx k = s->start; k < s->start + s->count; k++) {
       pw_corner_pair *q = &c->pair[k];
-      const pw_real step2 = (q->rate + shift) * q->dt * q->dt;
+      const pw_real step2 = q->rate * q->dt * q->dt;
       if (pw_rates_starts(c->sim, c->near[i]) && step2 > limit2) {
         soften(c, q, limit2 / step2);
       }
@@ -225,19 +266,9 @@ static void soften_pairs(pw_corner *c, pw_real shift, pw_real limit2)
 
 pw_real pw_corner_limit(pw_corner *c)
 {
-  if (c->npair == 0) {
-    limit_blocks(c, 0.0);
-    return 0.0;
-  }
   const pw_real resolve = c->param->step_frequency_max, limit = pw_min(MARGIN * resolve, LIMIT);
-  pw_real rate = slave_rate(c), shift = 0.0;
-  if (c->structure && (!c->given || c->structure->kind == PW_BODY_ROD)) { /* a rod yields */
-    shift = structure_rate(c);
-    rate += shift;
-  } else if (!c->given) {
-    rate += rates_on_grid(c, 1, c->master_rec);
-  }
-  limit_blocks(c, shift);
-  soften_pairs(c, shift, limit * limit);
+  const pw_real rate = c->npair > 0 ? find_rates(c) : 0.0;
+  limit_blocks(c);
+  soften_pairs(c, limit * limit);
   return rate > 0.0 ? resolve / sqrt(rate) : 0.0;
 }

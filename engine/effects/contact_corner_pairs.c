@@ -192,6 +192,9 @@ static void find_at_point(pw_corner *c, pw_idx i, pw_idx from, pw_idx *segment,
   const pw_domain_now d = pw_domain_of(&c->sim->points, i, c->surface.line->axi);
   const centre at = look_from_centre(c, &d, segment);
   const pw_idx before = sums->count;
+  /* A centre that is not found is a cell or more from the surface. */
+  const pw_real gap = at.found ? at.place.gap : c->sim->mesh.cell;
+  sums->clear = pw_min(sums->clear, pw_max(gap - at.radius, 0.0));
   if (all_clear(c, i, &at)) {
     return;
   }
@@ -360,20 +363,12 @@ static pw_real centre_depth(const pw_corner *c, const pw_corner_pair *q, const p
   return pw_max(-gap, 0.0);
 }
 
-/* Time in which a pair closes by what a step may leave unseen, by the velocities of surface and point;
- * s. */
+/* Time in which a pair closes by what a step may leave unseen; s. */
 static pw_real time_to_close(const pw_corner *c, const pw_corner_pair *q, const pw_domain_now *d)
 {
-  const pw_points *p = &c->sim->points;
-  const pw_interface *line = c->surface.line;
-  const pw_interface_node *a = &line->node[q->place.segment];
-  const pw_interface_node *b = &line->node[pw_interface_next(line, q->place.segment)];
-  pw_real speed = 0.0;
-  for (int k = 0; k < 2 && c->last_dt > 0.0; k++) {
-    const pw_real way = (1.0 - q->place.xi) * a->du[k] + q->place.xi * b->du[k];
-    speed += q->place.n[k] * (way / c->last_dt - p->v[k * p->ld + q->point]);
-  }
-  return speed > 0.0 ? UNSEEN * pw_domain_half_size(p, d) / speed : PW_HUGE;
+  const pw_real way = closing(c, q, d, 1.0),
+                most = UNSEEN * pw_domain_half_size(&c->sim->points, d);
+  return way > 0.0 ? c->sim->dt * most / way : PW_HUGE;
 }
 
 /* Square of the frequency of pairs [k, next), all of one point, from above. */
@@ -414,7 +409,7 @@ static void measure_block(void *ctx, pw_idx block)
       c->pair[sums->start + k] = measure_site(c, PW_SITES * first + k, &d, stiffness, sums);
       const pw_corner_pair *q = &c->pair[sums->start + k];
       sums->centre = pw_max(sums->centre, centre_depth(c, q, &d));
-      sums->soon = pw_min(sums->soon, time_to_close(c, q, &d));
+      sums->soon = c->sim->rates ? pw_min(sums->soon, time_to_close(c, q, &d)) : sums->soon;
     }
     sums->rate = pw_max(sums->rate, point_rate(c, start, sums->start + k, &d));
   }
@@ -430,7 +425,7 @@ static void list_blocks(pw_corner *c)
     pw_corner_sums *sums = &c->sums[k];
     if (pw_rates_starts(sim, k)) {
       pw_idx first, last;
-      *sums = (pw_corner_sums){.softest = PW_HUGE, .soon = PW_HUGE};
+      *sums = (pw_corner_sums){.softest = PW_HUGE, .soon = PW_HUGE, .clear = PW_HUGE};
       slave_range(c, k, &first, &last);
       if (first < last && block_near(c, k)) {
         c->near[c->nnear++] = k;
@@ -448,9 +443,22 @@ static void list_blocks(pw_corner *c)
   }
 }
 
+/* Largest speed of the surface, by its last step; m/s. */
+static pw_real surface_speed(const pw_corner *c)
+{
+  const pw_interface *line = c->surface.line;
+  pw_real way2 = 0.0;
+  for (pw_idx k = 0; k < line->n; k++) {
+    const pw_real *du = line->node[k].du;
+    way2 = pw_max(way2, du[0] * du[0] + du[1] * du[1]);
+  }
+  return c->last_dt > 0.0 ? sqrt(way2) / c->last_dt : 0.0;
+}
+
 pw_status pw_corner_search(pw_corner *c)
 {
   const pw_sim *sim = c->sim;
+  c->speed = surface_speed(c);
   list_blocks(c);
   pw_for_listed(c->near, c->nnear, sim->threads, find_in_block, c);
   c->npair = 0;
