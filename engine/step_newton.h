@@ -20,6 +20,11 @@
  * puts the mesh back in between, which changes what a driven boundary is tied to unless the mesh
  * moves along: without load->move a part whose nodes are driven is not cut unless asked for.
  *
+ * An iteration takes the whole of its correction where that takes a fifth off the slope of the potential
+ * along it or half off the residual, else shorter parts (line_search). Tangents are exact: residuals
+ * fall as their squares but for the forces of points that change between elastic and plastic over an
+ * iteration (tests/test_implicit_cases_converge_quadratically.c).
+ *
  * The residual is the norm of what is left at free components over the norm of reactions, external
  * forces and inertia together, as AMPLE does (Coombs, Augarde, Adv. Engng Software 142 (2020)
  * 102748). Strains smaller than about 1e-6 leave more than a small tolerance allows, by rounding

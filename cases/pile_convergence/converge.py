@@ -4,13 +4,14 @@
 
 usage: converge.py push|hammer [--out DIR] [--program FILE] [--threads N]
                    [--resolutions 1.2,2.4,4.8] [--contacts corner,penalty,frictional]
-                   [--end S] [--set KEY=VALUE]...
+                   [--end S[,S...]] [--set KEY=VALUE]...
 
 Runs a scene with each contact at each resolution (radius of the pile over edge of a cell), one
 after the other, and writes into DIR: table.csv, table.txt, and the plots resistance.png (or
 penetration.png), convergence.png and time.png (gnuplot). A run that already ended with the same
-settings is not repeated. Before each run it says how much time is left, once it can tell. Python's
-standard library only.
+settings, or failed, is not repeated. --end: when the runs end, one for all or one for each
+resolution; the fine zone of a push then ends just below the last place of the tip. Before each run
+it says how much time is left, once it can tell. Python's standard library only.
 """
 import argparse
 import csv
@@ -31,6 +32,9 @@ RADIUS = 0.15                       # m, of the pile in both cases
 DEPTHS = (0.4, 0.8, 1.2, 1.6)       # m, at which the push is compared
 BAND = 0.05                         # m, half of the way over which resistance is averaged
 BLOWS = 4                           # first blows whose sets are listed
+SURFACE = 5.0                       # m, height of the ground in both cases
+BELOW = 0.09                        # m, of fine cells at least below the last place of the tip
+STRIDE = 0.125                      # m, to a multiple of which the fine zone is extended
 
 
 def arguments():
@@ -42,24 +46,36 @@ def arguments():
     p.add_argument("--threads", type=int, default=2)
     p.add_argument("--resolutions", default="1.2,2.4,4.8")
     p.add_argument("--contacts", default="corner,penalty,frictional")
-    p.add_argument("--end", type=float, help="end_s of every run; default: the scene's own")
+    p.add_argument("--end", help="end_s of every run, or of each resolution; default: the scene's")
     p.add_argument("--set", action="append", default=[], dest="settings")
     a = p.parse_args()
     a.out = a.out or pathlib.Path("out") / f"pile_convergence_{a.study}"
     a.resolutions = [float(r) for r in a.resolutions.split(",")]
     a.contacts = a.contacts.split(",")
+    ends = [float(e) for e in a.end.split(",")] if a.end else [None]
+    if len(ends) not in (1, len(a.resolutions)):
+        p.error("--end: one value, or one for each resolution")
+    a.end = dict(zip(a.resolutions, ends if len(ends) > 1 else ends * len(a.resolutions)))
     return a
 
 
-def settings(study, contact, cell, args):
-    """What a scene of the case is changed to for one cell size."""
+def fine_zone(end):
+    """Beside the pile, and down to just below where its tip is at the end of a push at 1 m/s."""
+    deep = STRIDE * math.ceil((end + BELOW) / STRIDE)
+    return ["grid.fine_x_m=[0,0.25]", f"grid.fine_y_m=[{SURFACE - deep:g},{SURFACE + STRIDE:g}]"]
+
+
+def settings(contact, resolution, args):
+    """What a scene of the case is changed to for one resolution."""
+    cell, end = RADIUS / resolution, args.end[resolution]
     sets = [f"grid.cell_m={cell:.9g}"]
     if contact == "penalty":
         sets.append(f"contact_penalty.segment_m={0.4 * cell:.9g}")
     if contact != "corner":
         sets.append(f"bodies.pile.point_size_m={0.4 * cell:.9g}")
-    if args.end:
-        sets.append(f"time.end_s={args.end:.9g}")
+    if end:
+        sets.append(f"time.end_s={end:.9g}")
+        sets += fine_zone(end) if args.study == "push" else []
     return sets + args.settings
 
 
@@ -84,31 +100,32 @@ def run(args, contact, resolution, left):
     """Run one scene unless it has been run; its folder."""
     folder = args.out / f"{contact}_{resolution:g}"
     scene = CASES / SCENES[args.study][contact]
-    sets = settings(args.study, contact, RADIUS / resolution, args)
+    sets = settings(contact, resolution, args)
     command = [args.program, "run", str(scene), "--out", str(folder), "--threads",
                str(args.threads), "--quiet", "--force"]
     for s in sets:
         command += ["--set", s]
     note = args.out / f"{contact}_{resolution:g}.command"
     text = "\n".join([scene.read_text()] + sets)
-    if note.exists() and note.read_text() == text and finished(folder):
+    if note.exists() and note.read_text() == text and ended(folder):
         return folder
     print(f"run: {contact} radius/cell {resolution:g}{left}:", " ".join(sets), flush=True)
-    note.unlink(missing_ok=True)
+    for old in (note, folder / "summary.json"):
+        old.unlink(missing_ok=True)
     status = subprocess.run(command).returncode
-    if status == 0:
-        note.write_text(text)
-    elif not (folder / "summary.json").exists():
+    if not (folder / "summary.json").exists():
         sys.exit(f"converge.py: the scene above was refused at radius/cell {resolution:g}; "
                  "the tables hold what was run before it")
-    else:
+    if status != 0:
         print(f"     ended with status {status}: listed with what it reached", flush=True)
+    note.write_text(text)
     return folder
 
 
-def finished(folder):
+def ended(folder):
+    """Ran to its end or failed, so that it would do the same again; not: was interrupted."""
     try:
-        return json.loads((folder / "summary.json").read_text())["status"] == "finished"
+        return json.loads((folder / "summary.json").read_text())["status"] in ("finished", "failed")
     except (OSError, ValueError, KeyError):
         return False
 
