@@ -250,7 +250,7 @@ static pw_real shorten(pw_real part, pw_real start, pw_real end)
 /* Add the correction or, in a line search, a part of it that takes enough off the slope or off the
  * residual (H. Matthies, G. Strang, Int. J. Numer. Meth. Engng 14 (1979) 1613-1626); r: the residual
  * before and after. Residuals alone mislead: large turns pass through larger ones. */
-static pw_status advance(pw_newton *n, pw_real *r, pw_newton_report *report)
+static pw_status advance(pw_newton *n, pw_real tolerance, pw_real *r, pw_newton_report *report)
 {
   const int most = n->options.line_search;
   const pw_real before = *r, start = slope(n);
@@ -266,7 +266,8 @@ static pw_status advance(pw_newton *n, pw_real *r, pw_newton_report *report)
     if (s == PW_OK) {
       *r = residual(n);
       end = slope(n);
-      if (*r <= pw_max(sufficient * before, n->floor) || fabs(end) <= slack * fabs(start)) {
+      const pw_real good = pw_max(sufficient * before, pw_max(tolerance, n->floor));
+      if (*r <= good || fabs(end) <= slack * fabs(start)) {
         return PW_OK;
       }
     }
@@ -310,7 +311,7 @@ static pw_status balance(pw_newton *n, pw_real tolerance, pw_newton_report *repo
     settle(n, report->count > settled_after && r <= on_the_way);
     aim(n, tolerance, report);
     PW_TRY(solve(n));
-    PW_TRY(advance(n, &r, report));
+    PW_TRY(advance(n, tolerance, &r, report));
   }
 }
 

@@ -76,12 +76,13 @@ static pw_status check_options(const pw_newton_options *o)
                  o->max_iterations <= PW_NEWTON_HISTORY && o->max_cuts >= 0 && o->max_cuts <= 40,
              PW_ERR_ARGUMENT, "a Newton iteration to %g in %d steps with %d cuts", o->tolerance,
              o->max_iterations, o->max_cuts);
-  PW_REQUIRE(o->approach >= 0 && o->approach <= 20 && o->line_search >= 0 && o->line_search <= 20 &&
-                 o->volume_limit > 1.0,
-             PW_ERR_ARGUMENT,
-             "a Newton iteration with %d halvings of the way, %d of a correction, volumes changing "
-             "by factors up to %g",
-             o->approach, o->line_search, o->volume_limit);
+  PW_REQUIRE(
+      o->approach >= 0 && o->approach <= 20 && o->line_search >= 0 && o->line_search <= 20 &&
+          o->volume_limit > 1.0,
+      PW_ERR_ARGUMENT,
+      "a Newton iteration with %d halvings of the way, %d parts of a correction, volumes changing "
+      "by factors up to %g",
+      o->approach, o->line_search, o->volume_limit);
   return PW_OK;
 }
 

@@ -143,7 +143,7 @@ static void driven_nodes_forbid_cuts(void **state)
 }
 
 /* A plastic block pressed by a fifth in one step. Newton's method alone turns elements inside out;
- * with corrections halved until the residual falls, or on an approach, it gives one result. */
+ * with corrections shortened by a line search, or on an approach, it gives one result. */
 static void line_searches_rescue_steps(void **state)
 {
   (void)state;
@@ -164,7 +164,7 @@ static void line_searches_rescue_steps(void **state)
     result[k] = reaction(&b);
     assert_true((b.report.searches > 0) == (k == 1));
     assert_int_equal(b.report.approaches, k == 2);
-    print_message("way %d: %.6f N, %d iterations, %d halvings\n", k, result[k], b.report.iterations,
+    print_message("way %d: %.6f N, %d iterations, %d searches\n", k, result[k], b.report.iterations,
                   b.report.searches);
     end(&b);
   }

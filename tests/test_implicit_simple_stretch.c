@@ -167,7 +167,7 @@ static void cut_steps_recover(void **state)
   c.fbar = PW_FBAR_TOTAL;
   stretch_start(&c, &s);
   pw_newton_options options = pw_newton_defaults();
-  options.approach = 0;
+  options.approach = options.line_search = 0; /* which would spare the cuts */
   pw_newton_destroy(&s.newton);
   assert_ok(pw_newton_create(&s.model, &options, &s.newton));
   for (int k = 1; k <= 20; k++) {

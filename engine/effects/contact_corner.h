@@ -51,7 +51,6 @@ typedef struct pw_corner_sums {
   pw_real spring, dissipated; /**< J per radian or metre, this step */
   pw_real rate;               /**< largest square of a point's frequency, from above; 1/s2 */
   pw_real soon;               /**< until a site has closed by what a step may leave unseen; s */
-  pw_real clear;              /**< least way to the surface of points that hold no site; m */
   pw_real deepest;            /**< of a site, >= 0; m */
   pw_real centre;             /**< of a point's centre, >= 0; m */
   pw_real softest, stiffest;  /**< stiffness per area; Pa/m */
@@ -83,7 +82,6 @@ typedef struct pw_corner {
   pw_real *stiffness;   /**< [nnode] sums at nodes; zero but within pw_corner_limit */
   pw_real *begun;       /**< [nblock] time at which the block was looked at last; s */
   /* Of the present step: */
-  pw_real speed; /**< largest of the master's surface; m/s */
   pw_real *slave_rec, *master_rec;
   bool given;            /**< the master's motion is prescribed */
   pw_real slave_modulus; /**< largest density times squared wave speed in contact; Pa */

@@ -192,9 +192,6 @@ static void find_at_point(pw_corner *c, pw_idx i, pw_idx from, pw_idx *segment,
   const pw_domain_now d = pw_domain_of(&c->sim->points, i, c->surface.line->axi);
   const centre at = look_from_centre(c, &d, segment);
   const pw_idx before = sums->count;
-  /* A centre that is not found is a cell or more from the surface. */
-  const pw_real gap = at.found ? at.place.gap : c->sim->mesh.cell;
-  sums->clear = pw_min(sums->clear, pw_max(gap - at.radius, 0.0));
   if (all_clear(c, i, &at)) {
     return;
   }
@@ -425,14 +422,16 @@ static void list_blocks(pw_corner *c)
     pw_corner_sums *sums = &c->sums[k];
     if (pw_rates_starts(sim, k)) {
       pw_idx first, last;
-      *sums = (pw_corner_sums){.softest = PW_HUGE, .soon = PW_HUGE, .clear = PW_HUGE};
+      *sums = (pw_corner_sums){.softest = PW_HUGE, .soon = PW_HUGE};
       slave_range(c, k, &first, &last);
       if (first < last && block_near(c, k)) {
         c->near[c->nnear++] = k;
       }
-    } else if (sums->count > 0) {
+      continue;
+    }
+    sums->dissipated = 0.0; /* booked when the step began */
+    if (sums->count > 0) {
       sums->kept = sums->start;
-      sums->dissipated = 0.0;
       c->near[c->nnear++] = k;
     }
   }
@@ -443,22 +442,9 @@ static void list_blocks(pw_corner *c)
   }
 }
 
-/* Largest speed of the surface, by its last step; m/s. */
-static pw_real surface_speed(const pw_corner *c)
-{
-  const pw_interface *line = c->surface.line;
-  pw_real way2 = 0.0;
-  for (pw_idx k = 0; k < line->n; k++) {
-    const pw_real *du = line->node[k].du;
-    way2 = pw_max(way2, du[0] * du[0] + du[1] * du[1]);
-  }
-  return c->last_dt > 0.0 ? sqrt(way2) / c->last_dt : 0.0;
-}
-
 pw_status pw_corner_search(pw_corner *c)
 {
   const pw_sim *sim = c->sim;
-  c->speed = surface_speed(c);
   list_blocks(c);
   pw_for_listed(c->near, c->nnear, sim->threads, find_in_block, c);
   c->npair = 0;
