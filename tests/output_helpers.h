@@ -60,6 +60,16 @@ static inline test_bytes test_read(const char *path)
   return b;
 }
 
+/** Two files have the same bytes. */
+static inline void test_same_files(const char *first, const char *second)
+{
+  test_bytes one = test_read(first), two = test_read(second);
+  assert_int_equal(one.size, two.size);
+  assert_memory_equal(one.data, two.data, one.size);
+  free(one.data);
+  free(two.data);
+}
+
 static inline void test_write(const char *path, const void *bytes, size_t size)
 {
   FILE *file = fopen(path, "wb");
