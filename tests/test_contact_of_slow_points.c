@@ -4,8 +4,8 @@
  * short step.
  *  - The blocks in contact take long steps as far as their springs are resolved, short ones when
  *    these are stiff;
- *  - bar and block have the momentum of the start, to round-off: both meet the
- *    same force, whoever of them moves;
+ *  - bar and block have the momentum of the start, to round-off: both meet the same force, whoever of
+ *    them moves;
  *  - what is passed on is that of short steps for all, and energy is neither gained nor lost;
  *  - with friction, adhesion, a block of points: the same bits on 1 and 2 threads and after a restart. */
 #include "engine/effects/contact_corner.h"

@@ -112,10 +112,11 @@ static pw_real next_step(const pw_sim *sim, pw_corner *c)
   return c->npair == 0 && last > 0.0 && last < sim->dt_next ? growth * last : limit;
 }
 
+/* Note when blocks have been looked at: the next look counts the way since then. */
 static void finish_step(const pw_sim *sim, pw_corner *c)
 {
   c->last_dt = sim->dt;
-  for (pw_idx k = 0; k < sim->blocks.nblock; k++) {
+  for (pw_idx k = 0; sim->rates && k < sim->blocks.nblock; k++) {
     c->begun[k] = pw_rates_starts(sim, k) ? sim->time : c->begun[k];
   }
 }
@@ -188,13 +189,13 @@ static pw_status allocate(const pw_sim *sim, pw_corner *c)
   PW_TRY(pw_mem_alloc("contact pairs", c->capacity, sizeof *c->pair, &c->pair));
   if (sim->rates) {
     PW_TRY(pw_mem_alloc("contact pairs", c->capacity, sizeof *c->last, &c->last));
+    PW_TRY(pw_mem_alloc("contact steps", sim->blocks.nblock, sizeof(pw_real), &c->begun));
   }
   PW_TRY(pw_mem_alloc("contact sites", sites, sizeof(pw_idx), &c->found));
   PW_TRY(pw_mem_alloc("contact sites", sites, sizeof(pw_idx), &c->segment));
   PW_TRY(pw_mem_alloc("contact sums", sim->blocks.nblock, sizeof *c->sums, &c->sums));
   PW_TRY(pw_mem_alloc("contact blocks", sim->blocks.nblock, sizeof(pw_idx), &c->near));
   PW_TRY(pw_mem_alloc("contact boxes", 4 * (pw_off)sim->blocks.nblock, sizeof(pw_idx), &c->box));
-  PW_TRY(pw_mem_alloc("contact steps", sim->blocks.nblock, sizeof(pw_real), &c->begun));
   PW_TRY(pw_mem_alloc("contact cover", c->surface.line->n, sizeof(pw_real), &c->covered));
   return pw_mem_alloc("contact stiffness", sim->mesh.nnode, sizeof(pw_real), &c->stiffness);
 }

@@ -80,7 +80,7 @@ typedef struct pw_corner {
   pw_idx *box;          /**< [4 nblock] first and last node of the elements of a block along x, y */
   pw_real *covered;     /**< [line.n] area of the sites at each segment, with adhesion_gap_m; m2 */
   pw_real *stiffness;   /**< [nnode] sums at nodes; zero but within pw_corner_limit */
-  pw_real *begun;       /**< [nblock] time at which the block was looked at last; s */
+  pw_real *begun;       /**< [nblock] time of the last look at the block; s; NULL without rates */
   /* Of the present step: */
   pw_real *slave_rec, *master_rec;
   bool given;            /**< the master's motion is prescribed */
