@@ -153,17 +153,11 @@ static pw_status move_line(pw_sim *sim, void *ctx)
   return PW_OK;
 }
 
-static pw_idx clamp(pw_idx k, pw_idx last)
-{
-  return k < 0 ? 0 : (k > last ? last : k);
-}
-
-/* Node ranges that a block's points may reach: its elements and the halo, a cell more. */
+/* Node ranges of the blocks' elements. */
 static void set_boxes(const pw_sim *sim, pw_idx *box)
 {
   const pw_blocks *b = &sim->blocks;
   const pw_mesh *m = &sim->mesh;
-  const pw_idx halo = b->reach + 1;
   for (pw_idx k = 0; k < b->nblock; k++) {
     pw_idx *to = box + 4 * (pw_off)k;
     pw_idx low[2] = {m->cells[0], m->cells[1]}, high[2] = {0, 0};
@@ -175,8 +169,8 @@ static void set_boxes(const pw_sim *sim, pw_idx *box)
       }
     }
     for (int a = 0; a < 2; a++) {
-      to[2 * a] = clamp(low[a] - halo, m->cells[a]);
-      to[2 * a + 1] = clamp(high[a] + 1 + halo, m->cells[a]);
+      to[2 * a] = low[a];
+      to[2 * a + 1] = high[a] + 1;
     }
   }
 }
@@ -273,13 +267,13 @@ static void results(const pw_sim *sim, void *ctx, pw_record *out)
 static pw_status archive(pw_sim *sim, void *ctx, pw_archive *ar)
 {
   pw_corner *c = ctx;
-  pw_real value[6] = {c->master_modulus, c->centre_max, c->softest,
-                      c->stiffest,       c->offset_max, c->last_dt};
+  pw_real value[7] = {c->master_modulus, c->centre_max, c->softest,      c->stiffest,
+                      c->offset_max,     c->last_dt,    c->slave_modulus};
   PW_TRY(pw_contact_tally_archive(&c->tally, "contact_corner/reaction", ar));
   if (!c->structure) {
     PW_TRY(pw_interface_archive(&c->own, "contact_corner/master", ar));
   }
-  PW_TRY(ar->real(ar, "contact_corner/numbers", value, 6));
+  PW_TRY(ar->real(ar, "contact_corner/numbers", value, 7));
   PW_TRY(ar->offset(ar, "contact_corner/reduced", &c->reduced, 1));
   if (sim->rates) {
     PW_TRY(ar->real(ar, "contact_corner/begun", c->begun, sim->blocks.nblock));
@@ -290,6 +284,7 @@ static pw_status archive(pw_sim *sim, void *ctx, pw_archive *ar)
   c->stiffest = value[3];
   c->offset_max = value[4];
   c->last_dt = value[5];
+  c->slave_modulus = value[6];
   return PW_OK;
 }
 

@@ -50,7 +50,9 @@ typedef struct pw_corner_sums {
   pw_idx kept;                /**< or, in a step that the block has begun before, did here */
   pw_real spring, dissipated; /**< J per radian or metre, this step */
   pw_real rate;               /**< largest square of a point's frequency, from above; 1/s2 */
-  pw_real soon;               /**< until a site has closed by what a step may leave unseen; s */
+  pw_real soon;               /**< until a pair has closed by what a step may leave unseen; s */
+  pw_real touch;              /**< step that points let a block without pairs take; s */
+  pw_real longest;            /**< step that pairs let their block take; s */
   pw_real deepest;            /**< of a site, >= 0; m */
   pw_real centre;             /**< of a point's centre, >= 0; m */
   pw_real softest, stiffest;  /**< stiffness per area; Pa/m */
@@ -98,6 +100,37 @@ static inline pw_real pw_spring_energy(pw_real k, pw_real stretch)
 {
   return 0.5 * k * stretch * stretch;
 }
+
+/** @brief Step that resolves a spring of a squared frequency; s. @param[in] rate 1/s2 */
+static inline pw_real pw_corner_resolved(const pw_corner *c, pw_real rate)
+{
+  return c->param->step_frequency_max / sqrt(rate);
+}
+
+/** Part of half a domain by which site and surface may close in a step of the site's block: its force
+ *  stays meanwhile. */
+#define PW_CORNER_UNSEEN 0.02
+
+/** @brief Density times squared wave speed of point @p i; Pa. */
+static inline pw_real pw_corner_modulus(const pw_points *p, pw_idx i)
+{
+  return p->mass[i] / p->vol[i] * p->wave_speed[i] * p->wave_speed[i];
+}
+
+/** @brief Stiffness per area by which sites of a domain are held; Pa/m. */
+pw_real pw_corner_stiffness(const pw_corner *c, const pw_domain_now *d);
+
+/**
+ * @brief Bound the step of a block without pairs, sums->touch, by a point of it.
+ *
+ * The point may not come to the surface within it: half the time that it needs, as a step that is
+ * chosen by this look may end as long again after the next. Or what touches is resolved, and closes by
+ * no more than a step may leave unseen. Nothing in a scene without levels, or in a block with pairs.
+ * @param[in] q   place of the surface
+ * @param[in] way of the point's sites to it, >= 0; m
+ */
+void pw_corner_bound_touch(const pw_corner *c, const pw_domain_now *d, const pw_round_place *q,
+                           pw_real way, pw_corner_sums *sums);
 
 /** @brief (1), (2): fill c->pair, history of sites that have left. @return PW_OK;
  *  PW_ERR_MEMORY when more sites are in contact than there is room for. */

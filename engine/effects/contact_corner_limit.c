@@ -21,9 +21,6 @@ static const pw_real MARGIN = 1.875;
 /* And this at most, below the 2 at which a site alone becomes unstable. */
 static const pw_real LIMIT = 1.9;
 
-/* Most that the own step of a block that takes several short ones may be times its pairs' frequency. */
-static const pw_real RESOLVE_LONG = 1.2;
-
 enum { NODES = 16 /* grid nodes that a site, or two nodes of a line, reach */ };
 
 /* Grid nodes of one side of a pair and the sizes of their shares in its motion. */
@@ -217,24 +214,49 @@ static bool holds_master(const pw_corner *c, pw_idx block)
   return start[1] > start[0];
 }
 
-/* Step that a block may take: with pairs one that resolves them and lets them close by little; without,
- * the short one. A spring must see its site move, and beside a stiff contact a block of long steps
- * takes the energy of what swings there (measured: 3 to 8 % in an impact, 1 % or less with this rule). */
+/* Step that a block with pairs may take: one that resolves them and lets sites close by little. */
 static pw_real longest_step(const pw_corner *c, const pw_corner_sums *s)
 {
-  const pw_real resolve = pw_min(c->param->step_frequency_max, RESOLVE_LONG);
   pw_real rate = 0.0;
   for (pw_idx k = s->start; k < s->start + s->count; k++) {
     rate = pw_max(rate, c->pair[k].rate);
   }
-  return s->count > 0 ? pw_min(resolve / sqrt(rate), s->soon) : 0.0;
+  return pw_min(pw_corner_resolved(c, rate), s->soon);
+}
+
+/* Whether two blocks share nodes, or domains of the one those of the other's elements. */
+static bool beside(const pw_corner *c, pw_idx one, pw_idx other)
+{
+  const pw_idx *a = c->box + 4 * (pw_off)one, *b = c->box + 4 * (pw_off)other;
+  return a[0] <= b[1] + 1 && b[0] <= a[1] + 1 && a[2] <= b[3] + 1 && b[2] <= a[3] + 1;
+}
+
+/* Step that a block in reach without pairs may take. Its sites may come to the surface; and what swings
+ * at the pairs of a block beside it swings in it, too: with longer steps than those pairs' it would take
+ * that energy (measured: 3 to 8 % of an impact's). */
+static pw_real longest_beside(const pw_corner *c, pw_idx block)
+{
+  pw_real longest = c->sums[block].touch;
+  for (pw_idx i = 0; i < c->nnear; i++) {
+    const pw_corner_sums *s = &c->sums[c->near[i]];
+    if (s->count > 0 && beside(c, block, c->near[i])) {
+      longest = pw_min(longest, s->longest);
+    }
+  }
+  return longest;
 }
 
 /* Blocks in reach; those with points of the master take short steps. */
-static void limit_blocks(const pw_corner *c)
+static void limit_blocks(pw_corner *c)
 {
   for (pw_idx i = 0; c->sim->rates && i < c->nnear; i++) {
-    pw_rates_limit(c->sim, c->near[i], longest_step(c, &c->sums[c->near[i]]));
+    pw_corner_sums *s = &c->sums[c->near[i]];
+    s->longest = s->count > 0 ? longest_step(c, s) : PW_HUGE;
+  }
+  for (pw_idx i = 0; c->sim->rates && i < c->nnear; i++) {
+    const pw_idx block = c->near[i];
+    const pw_corner_sums *s = &c->sums[block];
+    pw_rates_limit(c->sim, block, s->count > 0 ? s->longest : longest_beside(c, block));
   }
   for (pw_idx k = 0; c->sim->rates && !c->structure && k < c->sim->blocks.nblock; k++) {
     if (holds_master(c, k)) {

@@ -13,18 +13,11 @@ static const pw_real EXPLAINED = 1.1;
 static const pw_real WORK_OUT = 0.25;
 /* Part of half a domain that may stay overlapped without force. */
 static const pw_real LEFT = 0.02;
-/* Soil softer than this part of the stiffest in contact is held as if it were that stiff. Soil that
- * has lost its stress for a moment, under a tip say, would let the master in as far as it is soft,
- * and come back stiff: overlap that no force explains. The step resolves the stiffest anyway. */
-static const pw_real SOFTEST = 0.02;
 /* Rounding of a gap, in cells. */
 static const pw_real CLEAR = 1e-6;
 /* Error of a normal beside a vertex, where the search stays with the segment it came from as long as
  * the other is nearer by 1e-9 of the square only (pw_interface_track). */
 static const pw_real ASKEW = 1e-4;
-/* Part of half a domain by which site and surface may close in a step of the site's block: its force
- * stays meanwhile. */
-static const pw_real UNSEEN = 0.02;
 /* Jumps of a site that is held are taken up to this part of half a domain. */
 static const pw_real ABSORBED = 0.15;
 
@@ -36,15 +29,22 @@ static void slave_range(const pw_corner *c, pw_idx block, pw_idx *first, pw_idx 
   *last = start[1];
 }
 
-/* Whether sites of a block's points can reach the box around the master. */
+static pw_idx clamp(pw_idx k, pw_idx last)
+{
+  return k < 0 ? 0 : (k > last ? last : k);
+}
+
+/* Whether sites of a block's points, in its elements and the halo, a cell more, can reach the box around
+ * the master. */
 static bool block_near(const pw_corner *c, pw_idx block)
 {
   const pw_mesh *m = &c->sim->mesh;
-  const pw_idx *k = c->box + 4 * (pw_off)block;
+  const pw_idx *k = c->box + 4 * (pw_off)block, halo = c->sim->blocks.reach + 1;
   const pw_real *box = c->surface.box;
-  return pw_mesh_node_x(m, k[0]) <= box[1] && pw_mesh_node_x(m, k[1]) >= box[0] &&
-         pw_mesh_node_y(m, k[2] * m->nodes[0]) <= box[3] &&
-         pw_mesh_node_y(m, k[3] * m->nodes[0]) >= box[2];
+  return pw_mesh_node_x(m, clamp(k[0] - halo, m->cells[0])) <= box[1] &&
+         pw_mesh_node_x(m, clamp(k[1] + halo, m->cells[0])) >= box[0] &&
+         pw_mesh_node_y(m, clamp(k[2] - halo, m->cells[1]) * m->nodes[0]) <= box[3] &&
+         pw_mesh_node_y(m, clamp(k[3] + halo, m->cells[1]) * m->nodes[0]) >= box[2];
 }
 
 /* The contact of a site has ended: its tangential spring lets go. */
@@ -74,8 +74,9 @@ static pw_idx near_cell(const pw_corner *c, pw_idx i, int site, const pw_real *x
   return node[0];
 }
 
-static void find_site(pw_corner *c, pw_idx i, const pw_domain_now *d, int site, pw_idx from,
-                      pw_corner_sums *sums)
+/* @param[in] alone nothing was learnt from the point's centre */
+static void find_site(pw_corner *c, pw_idx i, const pw_domain_now *d, int site, bool alone,
+                      pw_idx from, pw_corner_sums *sums)
 {
   const pw_points *p = &c->sim->points;
   const pw_off at = (pw_off)site * p->ld + i;
@@ -90,8 +91,11 @@ static void find_site(pw_corner *c, pw_idx i, const pw_domain_now *d, int site, 
     }
   } else {
     pw_idx cell = near_cell(c, i, site, x);
-    if (cell < 0 || !pw_round_line_near(&c->surface, x, cell, c->sim->mesh.cell, &place) ||
-        place.gap >= c->param->adhesion_gap_m) {
+    bool near = cell >= 0 && pw_round_line_near(&c->surface, x, cell, c->sim->mesh.cell, &place);
+    if (near && alone) {
+      pw_corner_bound_touch(c, d, &place, pw_max(place.gap, 0.0), sums);
+    }
+    if (!near || place.gap >= c->param->adhesion_gap_m) {
       p->contact_arc[at] = -1.0; /* one that waited has gone */
       return;
     }
@@ -99,12 +103,6 @@ static void find_site(pw_corner *c, pw_idx i, const pw_domain_now *d, int site, 
   c->found[from + sums->count] = PW_SITES * i + site;
   c->segment[from + sums->count] = place.segment;
   sums->count++;
-}
-
-/* Density times squared wave speed; Pa. */
-static pw_real modulus_of(const pw_points *p, pw_idx i)
-{
-  return p->mass[i] / p->vol[i] * p->wave_speed[i] * p->wave_speed[i];
 }
 
 /* Whether any site of a point is held, or waits to be. */
@@ -192,16 +190,19 @@ static void find_at_point(pw_corner *c, pw_idx i, pw_idx from, pw_idx *segment,
   const pw_domain_now d = pw_domain_of(&c->sim->points, i, c->surface.line->axi);
   const centre at = look_from_centre(c, &d, segment);
   const pw_idx before = sums->count;
+  if (at.found) {
+    pw_corner_bound_touch(c, &d, &at.place, pw_max(at.place.gap - at.radius, 0.0), sums);
+  }
   if (all_clear(c, i, &at)) {
     return;
   }
   for (int site = 0; site < PW_SITES; site++) {
     if (!site_clear(c, i, &d, site, &at)) {
-      find_site(c, i, &d, site, from, sums);
+      find_site(c, i, &d, site, !at.found, from, sums);
     }
   }
   if (sums->count > before) {
-    sums->modulus = pw_max(sums->modulus, modulus_of(&c->sim->points, i));
+    sums->modulus = pw_max(sums->modulus, pw_corner_modulus(&c->sim->points, i));
   }
 }
 
@@ -217,21 +218,6 @@ static void find_in_block(void *ctx, pw_idx block)
   for (pw_idx i = first; i < last; i++) {
     find_at_point(c, i, PW_SITES * first, &segment, sums);
   }
-}
-
-/* Stiffness per area; Pa/m. */
-static pw_real stiffness_of(const pw_corner *c, const pw_domain_now *d)
-{
-  const pw_points *p = &c->sim->points;
-  const pw_idx i = d->point;
-  if (c->param->normal_stiffness_pa_m > 0.0) {
-    return c->param->normal_stiffness_pa_m;
-  }
-  pw_real modulus = pw_max(modulus_of(p, i), SOFTEST * c->slave_modulus);
-  if (c->master_modulus > 0.0) { /* two springs in series */
-    modulus *= c->master_modulus / (modulus + c->master_modulus);
-  }
-  return c->param->stiffness_factor * modulus / pw_domain_half_size(p, d);
 }
 
 /* Short steps since a block was looked at. */
@@ -364,7 +350,7 @@ static pw_real centre_depth(const pw_corner *c, const pw_corner_pair *q, const p
 static pw_real time_to_close(const pw_corner *c, const pw_corner_pair *q, const pw_domain_now *d)
 {
   const pw_real way = closing(c, q, d, 1.0),
-                most = UNSEEN * pw_domain_half_size(&c->sim->points, d);
+                most = PW_CORNER_UNSEEN * pw_domain_half_size(&c->sim->points, d);
   return way > 0.0 ? c->sim->dt * most / way : PW_HUGE;
 }
 
@@ -401,7 +387,7 @@ static void measure_block(void *ctx, pw_idx block)
   for (pw_idx k = 0; k < sums->count;) {
     const pw_idx i = c->found[PW_SITES * first + k] / PW_SITES, start = sums->start + k;
     pw_domain_now d = pw_domain_of(&c->sim->points, i, c->surface.line->axi);
-    pw_real stiffness = stiffness_of(c, &d);
+    pw_real stiffness = pw_corner_stiffness(c, &d);
     for (; k < sums->count && c->found[PW_SITES * first + k] / PW_SITES == i; k++) {
       c->pair[sums->start + k] = measure_site(c, PW_SITES * first + k, &d, stiffness, sums);
       const pw_corner_pair *q = &c->pair[sums->start + k];
@@ -422,7 +408,7 @@ static void list_blocks(pw_corner *c)
     pw_corner_sums *sums = &c->sums[k];
     if (pw_rates_starts(sim, k)) {
       pw_idx first, last;
-      *sums = (pw_corner_sums){.softest = PW_HUGE, .soon = PW_HUGE};
+      *sums = (pw_corner_sums){.softest = PW_HUGE, .soon = PW_HUGE, .touch = PW_HUGE};
       slave_range(c, k, &first, &last);
       if (first < last && block_near(c, k)) {
         c->near[c->nnear++] = k;
