@@ -80,9 +80,32 @@ static pw_real edge(const pw_real part[2], int k, int n)
   return k == n ? part[1] : part[0] + (part[1] - part[0]) * (k / (pw_real)n);
 }
 
+/* The same along y of a cell that may be two rows high, from its lower row; rows that the rectangle
+ * enters. */
+static int part_of_rows(const cover *c, pw_idx i, pw_idx j, pw_real *part, pw_real *share)
+{
+  const pw_mesh *m = c->mesh;
+  const bool lower = (j - m->pair_row[0]) % 2 == 0;
+  *share = part_of(c, 1, j, part);
+  if (pw_mesh_rows(m, i, j) == 1) {
+    return 1;
+  }
+  if (lower && j + 1 < c->last[1]) {
+    pw_real upper[2];
+    *share = 0.5 * (*share + part_of(c, 1, j + 1, upper));
+    part[1] = upper[1];
+    return 2;
+  }
+  *share *= 0.5;
+  return lower || j == c->first[1] ? 1 : 0; /* an upper row belongs to the lower one */
+}
+
 static void fill_cell(const cover *c, pw_idx i, pw_idx j, pw_domain_list *list)
 {
-  pw_real x[2], y[2], share_x = part_of(c, 0, i, x), share_y = part_of(c, 1, j, y);
+  pw_real x[2], y[2], share_x = part_of(c, 0, i, x), share_y;
+  if (part_of_rows(c, i, j, y, &share_y) == 0) {
+    return;
+  }
   int n = wanted(c->b, x, y);
   int nx = (int)pw_max(1.0, ceil(n * share_x - 1e-6)),
       ny = (int)pw_max(1.0, ceil(n * share_y - 1e-6));

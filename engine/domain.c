@@ -154,6 +154,21 @@ typedef struct domains {
   pw_real loose[PW_CHUNK];                  /* 1 where a limit may be exceeded */
 } domains;
 
+/* Where rows are in pairs cells are twice as high. */
+static void measure_in_pairs(const pw_sim *sim, pw_idx first, pw_idx n, domains *d)
+{
+  const pw_mesh *m = &sim->mesh;
+  if (m->pair_column == m->cells[0]) {
+    return;
+  }
+  const pw_real *x = sim->points.x + first, *y = x + sim->points.ld;
+  const pw_real left = m->axis[0].node[m->pair_column];
+  const pw_real low = m->axis[1].node[m->pair_row[0]], high = m->axis[1].node[m->pair_row[1]];
+  for (pw_idx i = 0; i < n; i++) {
+    d->inv[1][i] *= x[i] >= left && y[i] >= low && y[i] < high ? 0.5 : 1.0;
+  }
+}
+
 /* Half-sides that follow the deformation, and what their limits are measured with. */
 static void follow(const pw_sim *sim, pw_idx first, pw_idx n, domains *d)
 {
@@ -180,6 +195,7 @@ static void follow(const pw_sim *sim, pw_idx first, pw_idx n, domains *d)
                          : 1.0;
     }
   }
+  measure_in_pairs(sim, first, n, d);
 }
 
 /* Find the domains that are not, beyond round-off, within all limits: most are, and need no
@@ -306,6 +322,11 @@ pw_idx pw_domain_reach(const pw_mesh *mesh, pw_real limit)
       reach = down > reach ? down : reach;
       reach = up > reach ? up : reach;
     }
+  }
+  if (mesh->pair_column <
+      mesh->cells[0]) { /* from the lower row: the upper one and two more each */
+    const pw_idx rows = 1 + (pw_idx)ceil(2.0 * limit - 1e-9);
+    reach = rows > reach ? rows : reach;
   }
   return reach < 2 ? 2 : reach;
 }

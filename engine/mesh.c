@@ -15,6 +15,29 @@ static void set_cells(pw_mesh *m, pw_idx nx, pw_idx ny)
   m->nodes[1] = ny + 1;
   m->nelem = nx * ny;
   m->nnode = m->nodes[0] * m->nodes[1];
+  m->pair_column = nx;
+}
+
+/* Columns and rows of the pairs: rows of the fine zone, from its lower end. */
+static void set_pairs(const pw_grid *grid, const pw_axis_plan *rows, pw_mesh *m)
+{
+  if (!m->graded || grid->paired_rows_x_m <= 0.0) {
+    return;
+  }
+  const pw_real slack = 1e-6 * m->cell;
+  m->pair_column = 0;
+  while (m->pair_column < m->cells[0] &&
+         m->axis[0].node[m->pair_column] < grid->paired_rows_x_m - slack) {
+    m->pair_column++;
+  }
+  m->pair_row[0] = rows->outer[0];
+  m->pair_row[1] = rows->outer[0] + rows->fine / 2 * 2;
+}
+
+/* The lower row of the pair that cell (i, j) is in. */
+static pw_idx lower_row(const pw_mesh *m, pw_idx i, pw_idx j)
+{
+  return pw_mesh_rows(m, i, j) == 2 ? j - (j - m->pair_row[0]) % 2 : j;
 }
 
 pw_status pw_mesh_create(const pw_real *origin, const pw_real *size, pw_real cell, pw_mesh *out)
@@ -107,6 +130,7 @@ pw_status pw_mesh_create_grid(const pw_grid *grid, pw_mesh *out)
   }
   set_cells(&m, plan[0].fine + plan[0].outer[0] + plan[0].outer[1],
             plan[1].fine + plan[1].outer[0] + plan[1].outer[1]);
+  set_pairs(grid, &plan[1], &m);
   *out = m;
   return PW_OK;
 }
@@ -132,7 +156,7 @@ static pw_idx locate_graded(const pw_mesh *m, const pw_real *x)
     }
     k[a] = pw_grid_axis_cell(axis, x[a]);
   }
-  return k[1] * m->cells[0] + k[0];
+  return lower_row(m, k[0], k[1]) * m->cells[0] + k[0];
 }
 
 pw_idx pw_mesh_locate(const pw_mesh *m, const pw_real *x)
@@ -185,6 +209,9 @@ void pw_mesh_locate_points(const pw_mesh *m, const pw_real *x, pw_idx ld, pw_idx
     const pw_idx count = n - first < PW_CHUNK ? n - first : PW_CHUNK;
     locate_along(&m->axis[0], x + first, count, kx);
     locate_along(&m->axis[1], x + ld + first, count, ky);
+    for (pw_idx i = 0; i < count && m->pair_column < m->cells[0]; i++) {
+      ky[i] = lower_row(m, kx[i], ky[i]);
+    }
 #pragma omp simd
     for (pw_idx i = 0; i < count; i++) {
       element[first + i] = ((kx[i] >= 0) & (ky[i] >= 0)) ? ky[i] * m->cells[0] + kx[i] : -1;

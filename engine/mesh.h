@@ -20,6 +20,7 @@ typedef struct pw_grid {
   pw_real fine_x_m[2], fine_y_m[2]; /**< fine zone; equal ends: the whole axis */
   pw_real growth;                   /**< largest ratio of neighbouring cells outside of it */
   pw_real cell_max_m;               /**< largest cell; 0: no limit */
+  pw_real paired_rows_x_m; /**< beyond it rows of the fine zone are taken in pairs; 0: nowhere */
 } pw_grid;
 
 typedef struct pw_mesh {
@@ -31,6 +32,8 @@ typedef struct pw_mesh {
   pw_idx nnode;
   bool graded;
   pw_grid_axis axis[2]; /**< of a graded grid */
+  pw_idx pair_column;   /**< first column of cells whose rows are in pairs; cells[0]: none */
+  pw_idx pair_row[2];   /**< those rows: [first, last), an even number */
 } pw_mesh;
 
 /**
@@ -49,7 +52,7 @@ pw_status pw_mesh_create_grid(const pw_grid *grid, pw_mesh *out);
 void pw_mesh_destroy(pw_mesh *m);
 
 /** @brief Element that holds @p x [2], or -1 outside. On a shared edge: the upper/right element,
- *  on the grid's far edges: the last one. */
+ *  on the grid's far edges: the last one; of two rows in a pair: the lower. */
 pw_idx pw_mesh_locate(const pw_mesh *m, const pw_real *x);
 
 /** @brief The same for @p n points. @param[in] x [2][ld] m @param[out] element [n] */
@@ -74,34 +77,45 @@ static inline pw_real pw_mesh_end(const pw_mesh *m, int a)
   return m->graded ? m->axis[a].node[m->cells[a]] : m->origin[a] + m->cell * m->cells[a];
 }
 
+/** @brief Rows that cell (i, j) is high: 2 where rows are in pairs (engine/pairs.h). */
+static inline int pw_mesh_rows(const pw_mesh *m, pw_idx i, pw_idx j)
+{
+  return i >= m->pair_column && j >= m->pair_row[0] && j < m->pair_row[1] ? 2 : 1;
+}
+
 /** @brief Width and height of an element. @param[out] size [2] m */
 static inline void pw_mesh_cell_size(const pw_mesh *m, pw_idx element, pw_real *size)
 {
-  size[0] = m->graded ? m->axis[0].size[element % m->cells[0]] : m->cell;
-  size[1] = m->graded ? m->axis[1].size[element / m->cells[0]] : m->cell;
+  const pw_idx i = element % m->cells[0], j = element / m->cells[0];
+  size[0] = m->graded ? m->axis[0].size[i] : m->cell;
+  size[1] = m->graded ? m->axis[1].size[j] * pw_mesh_rows(m, i, j) : m->cell;
 }
 
 /** @brief Width and height of the element at @p x [2], outside the grid that of the nearest one.
  *  @param[out] size [2] m */
 static inline void pw_mesh_size_at(const pw_mesh *m, const pw_real *x, pw_real *size)
 {
+  pw_idx k[2] = {0, 0};
   for (int a = 0; a < 2; a++) {
     const pw_grid_axis *axis = &m->axis[a];
-    size[a] =
-        m->graded ? axis->size[pw_grid_axis_cell(axis, pw_grid_axis_clamp(axis, x[a]))] : m->cell;
+    k[a] = m->graded ? pw_grid_axis_cell(axis, pw_grid_axis_clamp(axis, x[a])) : 0;
+    size[a] = m->graded ? axis->size[k[a]] : m->cell;
   }
+  size[1] *= m->graded ? pw_mesh_rows(m, k[0], k[1]) : 1;
 }
 
 /** @brief Smallest edge of the element at @p x [2] and of its neighbours; m. */
 static inline pw_real pw_mesh_near_size(const pw_mesh *m, const pw_real *x)
 {
-  pw_real near = m->cell;
-  for (int a = 0; a < 2 && m->graded; a++) {
-    const pw_grid_axis *axis = &m->axis[a];
-    pw_real size = axis->near[pw_grid_axis_cell(axis, pw_grid_axis_clamp(axis, x[a]))];
-    near = a == 0 ? size : pw_min(near, size);
+  if (!m->graded) {
+    return m->cell;
   }
-  return near;
+  pw_idx k[2];
+  for (int a = 0; a < 2; a++) {
+    k[a] = pw_grid_axis_cell(&m->axis[a], pw_grid_axis_clamp(&m->axis[a], x[a]));
+  }
+  const int rows = k[0] > 0 ? pw_mesh_rows(m, k[0] - 1, k[1]) : 1; /* of the column before it */
+  return pw_min(m->axis[0].near[k[0]], rows * m->axis[1].near[k[1]]);
 }
 
 /** @brief Largest edge of any cell; m. */

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "engine/ranges.h"
 
+#include "engine/pairs.h"
 #include "engine/rates.h"
 #include "partition/share.h"
 
@@ -64,6 +65,7 @@ static void use_nodes(pw_sim *sim)
   for (pw_idx k = 0; k < sim->blocks.nblock; k++) {
     pw_ranges_use(sim, k, &sim->nodes);
   }
+  pw_pairs_use(sim);
 }
 
 void pw_ranges_renew(pw_sim *sim)

@@ -41,6 +41,9 @@ const pw_key pw_scene_keys_grid[] = {
    "the fewest cells it allows fill the side exactly"},
   {"cell_max_m", PW_KEY_REAL, AT(grid.cell_max_m), 0, FAR_M, "0", NULL, NULL,
    "largest cell beside the fine zone; 0: no limit"},
+  {"paired_rows_x_m", PW_KEY_REAL, AT(grid.paired_rows_x_m), 0, FAR_M, "0", NULL, NULL,
+   "from the first line of nodes beyond it on, rows of the fine zone are taken in pairs: cells and "
+   "points twice as high; 0: nowhere"},
   {0}};
 
 const pw_key pw_scene_keys_time[] = {

@@ -33,10 +33,36 @@ static pw_status check_grading(const pw_scene *s)
   return PW_OK;
 }
 
+/* Rows in pairs: where nodes hang, nothing but plain explicit steps knows of it. */
+static pw_status check_pairs(const pw_scene *s)
+{
+  const pw_grid *g = &s->grid;
+  if (g->paired_rows_x_m <= 0.0) {
+    return PW_OK;
+  }
+  PW_REQUIRE(g->fine_y_m[0] < g->fine_y_m[1], PW_ERR_SCENE,
+             "paired_rows_x_m = %g m needs the rows of a fine zone: fine_y_m", g->paired_rows_x_m);
+  PW_REQUIRE(!(g->fine_x_m[0] < g->fine_x_m[1]) || g->paired_rows_x_m >= g->fine_x_m[1],
+             PW_ERR_SCENE, "paired_rows_x_m = %g m lies within the fine zone, which ends at %g m",
+             g->paired_rows_x_m, g->fine_x_m[1]);
+  PW_REQUIRE(g->paired_rows_x_m < g->origin_m[0] + g->size_m[0], PW_ERR_SCENE,
+             "paired_rows_x_m = %g m lies beyond the grid, which ends at %g m", g->paired_rows_x_m,
+             g->origin_m[0] + g->size_m[0]);
+  PW_REQUIRE(s->method.basis == PW_CPDI &&
+                 (s->method.update == PW_MUSL || s->method.update == PW_USL),
+             PW_ERR_SCENE, "paired_rows_x_m needs basis cpdi and update musl or usl");
+  PW_REQUIRE(
+      !pw_scene_find_effect(s, "absorbing") && !pw_scene_find_effect(s, "contact_frictional") &&
+          !pw_scene_find_effect(s, "contact_penalty"),
+      PW_ERR_SCENE, "paired_rows_x_m: not with absorbing, contact_frictional or contact_penalty");
+  return PW_OK;
+}
+
 pw_status pw_scene_check_grid(const pw_scene *s)
 {
   pw_real nodes = 1;
   PW_TRY(check_grading(s));
+  PW_TRY(check_pairs(s));
   for (int a = 0; a < 2; a++) {
     pw_axis_plan plan;
     PW_TRY(pw_mesh_plan(&s->grid, a, &plan));

@@ -5,6 +5,7 @@
 
 #include "engine/assemble.h"
 #include "engine/fbar.h"
+#include "engine/pairs.h"
 #include "engine/ranges.h"
 #include "engine/rates.h"
 #include "engine/structure_sim.h"
@@ -112,10 +113,17 @@ static pw_status grid_velocity(pw_sim *sim, double *clock)
   PW_TRY(pw_schedule_run(sim, PW_STAGE_NODE_FORCE));
   pw_structures_kick(sim);
   lap(sim, PW_TIMER_EFFECTS, clock);
+  if (pw_pairs_on(sim)) { /* mass, momentum, force */
+    pw_pairs_collect(sim, PW_NODE_MASS, PW_NODE_REMAP);
+  }
   pw_nodes_momentum(&sim->nodes, sim->dt, sim->mass_cut_off);
   lap(sim, PW_TIMER_NODES, clock);
   PW_TRY(constrain(sim, PW_STAGE_CONSTRAINT, PW_NODE_VEL));
   lap(sim, PW_TIMER_EFFECTS, clock);
+  if (pw_pairs_on(sim)) { /* velocities at the end and at the start of the step */
+    pw_pairs_spread(sim, PW_NODE_VEL, 4);
+    lap(sim, PW_TIMER_NODES, clock);
+  }
   return PW_OK;
 }
 
@@ -147,7 +155,7 @@ static pw_status stress_first(pw_sim *sim, double *clock)
 /* MUSL: the points take their increments of velocity, and their momentum goes back on the grid. */
 static pw_status remap_velocity(pw_sim *sim, double *clock)
 {
-  const bool alone = pw_schedule_count(sim, PW_STAGE_REMAP_P2G) == 0;
+  const bool alone = pw_schedule_count(sim, PW_STAGE_REMAP_P2G) == 0 && !pw_pairs_on(sim);
   const pw_pass pass = {increment_nodes, pw_block_velocity_remap, alone ? remap_nodes : NULL,
                         false};
   pw_assemble_pass(pw_rates_ending(sim), sim->threads, &pass, sim);
@@ -155,11 +163,18 @@ static pw_status remap_velocity(pw_sim *sim, double *clock)
   if (!alone) {
     PW_TRY(pw_schedule_run(sim, PW_STAGE_REMAP_P2G));
     lap(sim, PW_TIMER_EFFECTS, clock);
+    if (pw_pairs_on(sim)) {
+      pw_pairs_collect(sim, PW_NODE_REMAP, 2);
+    }
     remap_apart(sim);
     lap(sim, PW_TIMER_NODES, clock);
   }
   PW_TRY(constrain(sim, PW_STAGE_REMAP, PW_NODE_REMAP));
   lap(sim, PW_TIMER_EFFECTS, clock);
+  if (pw_pairs_on(sim)) {
+    pw_pairs_spread(sim, PW_NODE_REMAP, 2);
+    lap(sim, PW_TIMER_NODES, clock);
+  }
   return PW_OK;
 }
 

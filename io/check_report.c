@@ -109,7 +109,11 @@ static void print_grid(const pw_mesh *m, FILE *out)
 {
   fprintf(out, "cells        %d x %d", m->cells[0], m->cells[1]);
   if (m->graded) {
-    fprintf(out, ", graded from %g m to %g m\n", m->cell, pw_mesh_largest_cell(m));
+    fprintf(out, ", graded from %g m to %g m", m->cell, pw_mesh_largest_cell(m));
+    if (m->pair_column < m->cells[0]) {
+      fprintf(out, ", rows in pairs from x = %g m on", m->axis[0].node[m->pair_column]);
+    }
+    fprintf(out, "\n");
   } else {
     fprintf(out, " of %g m\n", m->cell);
   }

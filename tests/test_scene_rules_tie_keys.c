@@ -102,6 +102,29 @@ static void the_grid_is_whole_and_of_a_size(void **state)
   expect_rule("grid: size_m: ugimp needs at least two cells in each direction");
 }
 
+static void rows_in_pairs_need_a_fine_zone(void **state)
+{
+  (void)state;
+  s.grid.paired_rows_x_m = 1.0;
+  expect_rule("grid: paired_rows_x_m = 1 m needs the rows of a fine zone: fine_y_m");
+  s.grid.growth = 1.2;
+  s.grid.fine_x_m[1] = 1.5;
+  s.grid.fine_y_m[1] = 1.5;
+  s.method.basis = PW_CPDI;
+  expect_rule("grid: paired_rows_x_m = 1 m lies within the fine zone, which ends at 1.5 m");
+  s.grid.paired_rows_x_m = 2.0;
+  expect_rule("grid: paired_rows_x_m = 2 m lies beyond the grid, which ends at 2 m");
+  s.grid.paired_rows_x_m = 1.5;
+  assert_ok(pw_scene_check(&s));
+  s.method.update = PW_USF;
+  expect_rule("grid: paired_rows_x_m needs basis cpdi and update musl or usl");
+  s.method.update = PW_MUSL;
+  pw_contact_frictional_param *c = pw_scene_add_effect(&s, "contact_frictional");
+  c->master = 0;
+  c->slave = 1;
+  expect_rule("grid: paired_rows_x_m: not with absorbing, contact_frictional or contact_penalty");
+}
+
 static void names_are_unique(void **state)
 {
   (void)state;
@@ -263,6 +286,7 @@ int main(void)
       RULE(a_sound_scene_passes),
       RULE(counts_are_limited),
       RULE(the_grid_is_whole_and_of_a_size),
+      RULE(rows_in_pairs_need_a_fine_zone),
       RULE(names_are_unique),
       RULE(bodies_lie_in_the_grid),
       RULE(shapes_are_sound),
