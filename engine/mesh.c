@@ -19,10 +19,10 @@ static void set_cells(pw_mesh *m, pw_idx nx, pw_idx ny)
 }
 
 /* Columns and rows of the pairs: rows of the fine zone, from its lower end. */
-static void set_pairs(const pw_grid *grid, const pw_axis_plan *rows, pw_mesh *m)
+static pw_status set_pairs(const pw_grid *grid, const pw_axis_plan *rows, pw_mesh *m)
 {
   if (!m->graded || grid->paired_rows_x_m <= 0.0) {
-    return;
+    return PW_OK;
   }
   const pw_real slack = 1e-6 * m->cell;
   m->pair_column = 0;
@@ -32,6 +32,11 @@ static void set_pairs(const pw_grid *grid, const pw_axis_plan *rows, pw_mesh *m)
   }
   m->pair_row[0] = rows->outer[0];
   m->pair_row[1] = rows->outer[0] + rows->fine / 2 * 2;
+  PW_REQUIRE(
+      m->pair_column < m->cells[0], PW_ERR_SCENE,
+      "grid: paired_rows_x_m = %g m: no line of nodes before the end of the grid lies beyond it",
+      grid->paired_rows_x_m);
+  return PW_OK;
 }
 
 /* The lower row of the pair that cell (i, j) is in. */
@@ -130,7 +135,11 @@ pw_status pw_mesh_create_grid(const pw_grid *grid, pw_mesh *out)
   }
   set_cells(&m, plan[0].fine + plan[0].outer[0] + plan[0].outer[1],
             plan[1].fine + plan[1].outer[0] + plan[1].outer[1]);
-  set_pairs(grid, &plan[1], &m);
+  status = set_pairs(grid, &plan[1], &m);
+  if (status != PW_OK) {
+    pw_mesh_destroy(&m);
+    return status;
+  }
   *out = m;
   return PW_OK;
 }

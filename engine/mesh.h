@@ -83,6 +83,13 @@ static inline int pw_mesh_rows(const pw_mesh *m, pw_idx i, pw_idx j)
   return i >= m->pair_column && j >= m->pair_row[0] && j < m->pair_row[1] ? 2 : 1;
 }
 
+/** @brief Whether node (i, j) hangs on those below and above. */
+static inline bool pw_mesh_hangs(const pw_mesh *m, pw_idx i, pw_idx j)
+{
+  return i >= m->pair_column && j > m->pair_row[0] && j < m->pair_row[1] &&
+         (j - m->pair_row[0]) % 2 == 1;
+}
+
 /** @brief Width and height of an element. @param[out] size [2] m */
 static inline void pw_mesh_cell_size(const pw_mesh *m, pw_idx element, pw_real *size)
 {
@@ -114,8 +121,10 @@ static inline pw_real pw_mesh_near_size(const pw_mesh *m, const pw_real *x)
   for (int a = 0; a < 2; a++) {
     k[a] = pw_grid_axis_cell(&m->axis[a], pw_grid_axis_clamp(&m->axis[a], x[a]));
   }
-  const int rows = k[0] > 0 ? pw_mesh_rows(m, k[0] - 1, k[1]) : 1; /* of the column before it */
-  return pw_min(m->axis[0].near[k[0]], rows * m->axis[1].near[k[1]]);
+  const pw_idx before = k[0] - 1; /* column; two rows up and down there are pairs, too */
+  const bool pairs =
+      pw_mesh_rows(m, before, k[1] - 2) == 2 && pw_mesh_rows(m, before, k[1] + 2) == 2;
+  return pw_min(m->axis[0].near[k[0]], (pairs ? 2.0 : 1.0) * m->axis[1].near[k[1]]);
 }
 
 /** @brief Largest edge of any cell; m. */

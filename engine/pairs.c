@@ -7,64 +7,88 @@ static pw_idx kept_rows(const pw_mesh *m)
   return (m->pair_row[1] - m->pair_row[0]) / 2 + 1;
 }
 
-static pw_real *record(const pw_sim *sim, pw_idx i, pw_idx j)
+/* Records of row j of field f, from the first column of pairs on: *n of them. */
+static pw_real *row_of(const pw_sim *sim, int f, pw_idx j, pw_idx *n)
 {
-  return sim->nodes.rec + ((pw_off)j * sim->mesh.nodes[0] + i) * PW_NODE;
+  const pw_mesh *m = &sim->mesh;
+  *n = m->nodes[0] - m->pair_column;
+  return pw_nodes_field(&sim->nodes, f) + ((pw_off)j * m->nodes[0] + m->pair_column) * PW_NODE;
 }
 
 void pw_pairs_use(pw_sim *sim)
 {
   const pw_mesh *m = &sim->mesh;
   for (pw_idx j = m->pair_row[0]; pw_pairs_on(sim) && j <= m->pair_row[1]; j++) {
-    pw_nodes_use(&sim->nodes, 0, j * m->nodes[0] + m->pair_column, m->nodes[0] - m->pair_column);
+    for (int f = 0; f < sim->nodes.nfield; f++) {
+      pw_nodes_use(&sim->nodes, f, j * m->nodes[0] + m->pair_column, m->nodes[0] - m->pair_column);
+    }
   }
 }
 
-/* Each kept row takes from those below and above it, which it shares with its neighbours: they are
- * cleared afterwards, by the row below them. */
-void pw_pairs_collect(pw_sim *sim, int slot, int n)
+/* A kept row takes from those below and above it. */
+static void take(const pw_sim *sim, int f, pw_idx j, int slot, int n)
 {
   const pw_mesh *m = &sim->mesh;
-  const pw_idx rows = kept_rows(m);
-#pragma omp parallel default(none) shared(sim, m, rows, slot, n) num_threads(sim->threads)
+  const pw_off row = (pw_off)m->nodes[0] * PW_NODE;
+  pw_idx count;
+  pw_real *to = row_of(sim, f, j, &count) + slot;
+  for (pw_idx i = 0; i < count; i++, to += PW_NODE) {
+    for (int c = 0; c < n; c++) {
+      to[c] += (j > m->pair_row[0] ? 0.5 * to[c - row] : 0.0) +
+               (j < m->pair_row[1] ? 0.5 * to[c + row] : 0.0);
+    }
+  }
+}
+
+static void clear(const pw_sim *sim, int f, pw_idx j, int slot, int n)
+{
+  pw_idx count;
+  pw_real *at = row_of(sim, f, j, &count) + slot;
+  for (pw_idx i = 0; i < count; i++, at += PW_NODE) {
+    for (int c = 0; c < n; c++) {
+      at[c] = 0.0;
+    }
+  }
+}
+
+static void spread(const pw_sim *sim, int f, pw_idx j, int slot, int n)
+{
+  const pw_off row = (pw_off)sim->mesh.nodes[0] * PW_NODE;
+  pw_idx count;
+  pw_real *at = row_of(sim, f, j, &count) + slot;
+  for (pw_idx i = 0; i < count; i++, at += PW_NODE) {
+    for (int c = 0; c < n; c++) {
+      at[c] = 0.5 * (at[c - row] + at[c + row]);
+    }
+  }
+}
+
+/* Neighbouring kept rows share a hanging one, which is cleared when both have taken. */
+void pw_pairs_collect(pw_sim *sim, int slot, int n)
+{
+  const pw_idx rows = kept_rows(&sim->mesh), first = sim->mesh.pair_row[0];
+  const int fields = sim->nodes.nfield;
+#pragma omp parallel default(none) shared(sim, rows, first, fields, slot, n)                       \
+    num_threads(sim->threads)
   {
 #pragma omp for schedule(static)
-    for (pw_idx k = 0; k < rows; k++) {
-      const pw_idx j = m->pair_row[0] + 2 * k;
-      for (pw_idx i = m->pair_column; i < m->nodes[0]; i++) {
-        pw_real *to = record(sim, i, j) + slot;
-        for (int c = 0; c < n; c++) {
-          to[c] += (k > 0 ? 0.5 * record(sim, i, j - 1)[slot + c] : 0.0) +
-                   (k < rows - 1 ? 0.5 * record(sim, i, j + 1)[slot + c] : 0.0);
-        }
-      }
+    for (pw_idx k = 0; k < rows * fields; k++) {
+      take(sim, k / rows, first + 2 * (k % rows), slot, n);
     }
 #pragma omp for schedule(static)
-    for (pw_idx k = 0; k < rows - 1; k++) {
-      for (pw_idx i = m->pair_column; i < m->nodes[0]; i++) {
-        pw_real *hanging = record(sim, i, m->pair_row[0] + 2 * k + 1) + slot;
-        for (int c = 0; c < n; c++) {
-          hanging[c] = 0.0;
-        }
-      }
+    for (pw_idx k = 0; k < (rows - 1) * fields; k++) {
+      clear(sim, k / (rows - 1), first + 2 * (k % (rows - 1)) + 1, slot, n);
     }
   }
 }
 
 void pw_pairs_spread(pw_sim *sim, int slot, int n)
 {
-  const pw_mesh *m = &sim->mesh;
-  const pw_idx pairs = kept_rows(m) - 1;
-#pragma omp parallel for default(none) shared(sim, m, pairs, slot, n) num_threads(sim->threads)    \
-    schedule(static)
-  for (pw_idx k = 0; k < pairs; k++) {
-    const pw_idx j = m->pair_row[0] + 2 * k + 1;
-    for (pw_idx i = m->pair_column; i < m->nodes[0]; i++) {
-      const pw_real *below = record(sim, i, j - 1) + slot, *above = record(sim, i, j + 1) + slot;
-      pw_real *hanging = record(sim, i, j) + slot;
-      for (int c = 0; c < n; c++) {
-        hanging[c] = 0.5 * (below[c] + above[c]);
-      }
-    }
+  const pw_idx pairs = kept_rows(&sim->mesh) - 1, first = sim->mesh.pair_row[0];
+  const int fields = sim->nodes.nfield;
+#pragma omp parallel for default(none) shared(sim, pairs, first, fields, slot, n)                  \
+    num_threads(sim->threads) schedule(static)
+  for (pw_idx k = 0; k < pairs * fields; k++) {
+    spread(sim, k / pairs, first + 2 * (k % pairs) + 1, slot, n);
   }
 }

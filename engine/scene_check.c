@@ -51,10 +51,12 @@ static pw_status check_pairs(const pw_scene *s)
   PW_REQUIRE(s->method.basis == PW_CPDI &&
                  (s->method.update == PW_MUSL || s->method.update == PW_USL),
              PW_ERR_SCENE, "paired_rows_x_m needs basis cpdi and update musl or usl");
-  PW_REQUIRE(
-      !pw_scene_find_effect(s, "absorbing") && !pw_scene_find_effect(s, "contact_frictional") &&
-          !pw_scene_find_effect(s, "contact_penalty"),
-      PW_ERR_SCENE, "paired_rows_x_m: not with absorbing, contact_frictional or contact_penalty");
+  PW_REQUIRE(!pw_scene_find_effect(s, "absorbing") && !pw_scene_find_effect(s, "damping_local") &&
+                 !pw_scene_find_effect(s, "contact_frictional") &&
+                 !pw_scene_find_effect(s, "contact_penalty"),
+             PW_ERR_SCENE,
+             "paired_rows_x_m: not with absorbing, damping_local, contact_frictional or "
+             "contact_penalty");
   return PW_OK;
 }
 

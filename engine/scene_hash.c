@@ -47,7 +47,10 @@ static void hash_material(uint64_t *hash, const pw_scene_material *m)
 static void hash_grid(uint64_t *hash, const pw_scene *s)
 {
   const pw_real time[3] = {s->time.cfl, s->time.dt_max_s, s->time.dt_s};
-  pw_hash_bytes(hash, &s->grid, sizeof s->grid);
+  pw_hash_bytes(hash, &s->grid, offsetof(pw_grid, paired_rows_x_m));
+  if (s->grid.paired_rows_x_m > 0.0) {
+    pw_hash_bytes(hash, &s->grid.paired_rows_x_m, sizeof(pw_real));
+  }
   pw_hash_bytes(hash, time, sizeof time);
   pw_hash_bytes(hash, &s->method.basis, sizeof s->method.basis);
   pw_hash_bytes(hash, &s->method.update, sizeof s->method.update);

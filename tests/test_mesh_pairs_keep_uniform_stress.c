@@ -7,6 +7,7 @@
  *  - a free body keeps its uniform velocity and no stress, across rows as it moves;
  *  - a column that swings up and down in pairs and rows side by side is a quarter of its period
  *    late by no more than on the fine grid: u = A sin(pi y / 2 H) at t = H / c;
+ *  - nodes hang in the field of a master of points, too; none may be held alone;
  *  - sand with long steps of its blocks gives the same bits on 1 and 2 threads. */
 #include "tests/engine_scenes.h"
 
@@ -161,6 +162,61 @@ static void a_column_swings(void **state)
   assert_true(pairs < 0.01);
 }
 
+/* A block of points on soil, both beyond the column. */
+static void all_fields_hang(void **state)
+{
+  (void)state;
+  static pw_scene s;
+  set_scene(&s, false, 0.3, (pw_real[]){0.0, 3.0, 0.0, 1.0});
+  const pw_real block[4] = {1.2, 1.8, 1.0, 1.4};
+  test_rectangle(&s, test_elastic(&s, 1e8, 0.3, 2500.0), block, 0.05)->velocity_m_s[1] = -1.0;
+  test_add_contact(&s, TEST_CORNER, 1, 0, 0.3, 0.0, 0.05);
+  test_gravity(&s, 0.0);
+  test_roller(&s, PW_SIDE_BOTTOM);
+  pw_sim *sim = test_sim(&s, 1);
+  const pw_mesh *m = &sim->mesh;
+  pw_real off = 0.0, most[2] = {0.0, 0.0};
+  test_run_to(sim, 0.01);
+  assert_int_equal(sim->nodes.nfield, 2);
+  for (int f = 0; f < 2; f++) {
+    for (pw_idx k = 0; k < m->nnode; k++) {
+      const pw_real *at = pw_nodes_field(&sim->nodes, f) + (pw_off)k * PW_NODE + PW_NODE_VEL + 1;
+      const pw_off row = (pw_off)m->nodes[0] * PW_NODE;
+      if (pw_mesh_hangs(m, k % m->nodes[0], k / m->nodes[0])) {
+        off = fmax(off, fabs(at[0] - 0.5 * (at[-row] + at[row])));
+        most[f] = fmax(most[f], fabs(at[0]));
+      }
+    }
+  }
+  print_message("hanging nodes off by %.1e of %.2f and %.2f m/s\n", off, most[0], most[1]);
+  assert_true(off < 1e-14 && most[0] > 1e-3 && most[1] > 0.1);
+  pw_sim_destroy(&sim);
+}
+
+static pw_status held(pw_real low, pw_real high)
+{
+  static pw_scene s;
+  pw_sim *sim = NULL;
+  set_scene(&s, false, 0.3, whole);
+  pw_boundary_param *b = pw_scene_add_effect(&s, "boundary");
+  *b = (pw_boundary_param){
+      .side = PW_SIDE_BOX, .x_m = {1.0, 3.0}, .y_m = {low, high}, .fix_y = true, .body = -1};
+  pw_error_clear();
+  const pw_status status = pw_sim_create(&s, 1, &sim);
+  pw_sim_destroy(&sim);
+  return status;
+}
+
+static void none_is_held_alone(void **state)
+{
+  (void)state;
+  assert_ok(held(0.625, 0.625)); /* rows of nodes from 0.5 m on, every second one hangs */
+  assert_ok(held(0.625, 0.75));
+  assert_int_equal(held(0.5625, 0.5625), PW_ERR_SCENE);
+  assert_non_null(strstr(pw_error_text(), "hangs on those below and above"));
+  assert_int_equal(held(0.625, 0.6875), PW_ERR_SCENE);
+}
+
 static pw_sim *sand(int threads)
 {
   static pw_scene s;
@@ -206,6 +262,7 @@ int main(void)
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(points_fill_the_pairs), cmocka_unit_test(uniform_stress_rests),
       cmocka_unit_test(a_free_body_moves_on),  cmocka_unit_test(a_column_swings),
+      cmocka_unit_test(all_fields_hang),       cmocka_unit_test(none_is_held_alone),
       cmocka_unit_test(threads_do_not_matter),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);

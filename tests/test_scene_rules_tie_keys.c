@@ -122,7 +122,8 @@ static void rows_in_pairs_need_a_fine_zone(void **state)
   pw_contact_frictional_param *c = pw_scene_add_effect(&s, "contact_frictional");
   c->master = 0;
   c->slave = 1;
-  expect_rule("grid: paired_rows_x_m: not with absorbing, contact_frictional or contact_penalty");
+  expect_rule("grid: paired_rows_x_m: not with absorbing, damping_local, "
+              "contact_frictional or contact_penalty");
 }
 
 static void names_are_unique(void **state)

@@ -101,6 +101,20 @@ static void collect(boundary *c, const pw_mesh *m)
   }
 }
 
+/* A node that hangs is held with those it hangs on, or not at all. */
+static pw_status check_hanging(const boundary *c, const pw_mesh *m)
+{
+  for (pw_idx k = 0; k < c->n; k++) {
+    const pw_idx i = c->node[k] % m->nodes[0], j = c->node[k] / m->nodes[0];
+    PW_REQUIRE(!pw_mesh_hangs(m, i, j) || (holds(c, m, i, j - 1) && holds(c, m, i, j + 1)),
+               PW_ERR_SCENE,
+               "boundary %d holds the node at (%g, %g) m, which hangs on those below and above "
+               "(grid: paired_rows_x_m), but not both of these",
+               c->instance, pw_mesh_node_x(m, c->node[k]), pw_mesh_node_y(m, c->node[k]));
+  }
+  return PW_OK;
+}
+
 static pw_status hold(pw_sim *sim, void *ctx)
 {
   boundary *c = ctx;
@@ -216,7 +230,7 @@ static pw_status create(pw_sim *sim, const void *param, void **ctx)
   PW_REQUIRE(c->n > 0, PW_ERR_SCENE, "boundary %d holds no node of the grid", c->instance);
   PW_TRY(pw_mem_alloc("boundary nodes", c->n, sizeof(pw_idx), &c->node));
   collect(c, &sim->mesh);
-  return PW_OK;
+  return check_hanging(c, &sim->mesh);
 }
 
 static const pw_hook hooks[] = {
