@@ -94,6 +94,13 @@ static bool limit_aspect(pw_real r[4], pw_real area, pw_real aspect)
   return true;
 }
 
+/* Whether the aspect of a point's domain is measured in cells: where points were divided by cells. Those
+ * of one size are square whatever the cells, a pile's too, that stands in the tall ones above the soil. */
+static bool aspect_in_cells(const pw_sim *sim, pw_idx i)
+{
+  return sim->mesh.graded && sim->scene.body[sim->points.body[i]].points_per_cell > 0;
+}
+
 /* The same with lengths measured in the cell that holds the point; the initial half-sides follow
  * (F^-1 r). A domain that deforms on is reshaped a little in every step, so it never jumps. */
 static bool reshape(pw_sim *sim, pw_idx i, pw_real area, pw_real r[4])
@@ -101,7 +108,7 @@ static bool reshape(pw_sim *sim, pw_idx i, pw_real area, pw_real r[4])
   pw_points *p = &sim->points;
   const pw_idx ld = p->ld;
   pw_real x[2] = {p->x[i], p->x[ld + i]}, cell[2] = {1.0, 1.0};
-  if (sim->mesh.graded) {
+  if (aspect_in_cells(sim, i)) {
     pw_mesh_size_at(&sim->mesh, x, cell);
   }
   pw_real s[4] = {r[0] / cell[0], r[1] / cell[1], r[2] / cell[0], r[3] / cell[1]};
@@ -200,8 +207,9 @@ static void follow(const pw_sim *sim, pw_idx first, pw_idx n, domains *d)
 
 /* Find the domains that are not, beyond round-off, within all limits: most are, and need no
  * divisions. How many.
- * @param spread aspect + 1 / aspect of the most slender domain; 0: no such limit */
-static pw_real find_loose(pw_idx n, pw_real spread, domains *d)
+ * @param spread aspect + 1 / aspect of the most slender domain; 0: no such limit
+ * @param by_cells how aspects are measured */
+static pw_real find_loose(pw_idx n, pw_real spread, bool by_cells, domains *d)
 {
   const pw_real within = 1.0 - 1e-9, any = spread > 0.0 ? 0.0 : 1.0;
   pw_real count = 0.0;
@@ -211,8 +219,13 @@ static pw_real find_loose(pw_idx n, pw_real spread, domains *d)
     const pw_real s0 = d->r[0][i] * inv0, s1 = d->r[1][i] * inv1;
     const pw_real s2 = d->r[2][i] * inv0, s3 = d->r[3][i] * inv1;
     const pw_real xx = s0 * s0 + s2 * s2, yy = s1 * s1 + s3 * s3;
-    const pw_real across = 2.0 * (s0 * s2 + s1 * s3), square = xx + yy, det = s0 * s3 - s1 * s2;
-    const pw_real round = square <= det * spread * within ? 1.0 : any;
+    const pw_real across = 2.0 * (s0 * s2 + s1 * s3), square = xx + yy;
+    const pw_real a0 = by_cells ? inv0 : 1.0,
+                  a1 = by_cells ? inv1 : 1.0; /* aspects are measured in */
+    const pw_real r0 = d->r[0][i] * a0, r1 = d->r[1][i] * a1;
+    const pw_real r2 = d->r[2][i] * a0, r3 = d->r[3][i] * a1;
+    const pw_real sides = r0 * r0 + r1 * r1 + r2 * r2 + r3 * r3, area = r0 * r3 - r1 * r2;
+    const pw_real round = sides <= area * spread * within ? 1.0 : any;
     /* the longer diagonal */
     const pw_real close = square + fabs(across) <= limit * limit * within ? round : 0.0;
     d->loose[i] = 1.0 - close;
@@ -270,7 +283,8 @@ static void convect(pw_sim *sim, const pw_gradients *grad, pw_idx first, pw_idx 
   const pw_real aspect = sim->scene.method.domain_aspect_max;
   domains d;
   follow(sim, first, n, &d);
-  const bool any = find_loose(n, aspect > 0.0 ? aspect + 1.0 / aspect : 0.0, &d) > 0.0;
+  const bool any = find_loose(n, aspect > 0.0 ? aspect + 1.0 / aspect : 0.0,
+                              aspect_in_cells(sim, first), &d) > 0.0;
   for (pw_idx k = 0; any && k < n; k++) {
     if (d.loose[k] > 0.0) {
       tighten(sim, first + k, k, &d, sums);

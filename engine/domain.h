@@ -22,7 +22,8 @@
  * within the halo (pw_domain_reach).
  * A domain that has become degenerate is replaced by the square of its material's area, within
  * the limit, and its initial half-sides by F^-1 r, so that it deforms on from there.
- * With domain_aspect_max a domain whose principal half-sides, measured in the cell where it is,
+ * With domain_aspect_max a domain whose principal half-sides, measured in the cell where it is
+ * (points of one size, without points_per_cell: in metres; all points of a call are of one body),
  * differ by more than that ratio is reshaped at the area of its material, as little as is needed.
  * A domain held by the corner contact keeps its place at the surface when it is limited or reshaped:
  * its centre takes back the mean jump of the sites that are held.

@@ -66,7 +66,8 @@ const pw_key pw_scene_keys_method[] = {
   {"domain_limit_cells", PW_KEY_REAL, AT(method.domain_limit_cells), 0, 100, "1", NULL, NULL,
    "largest half diagonal of a point's domain; 0: no limit"},
   {"domain_aspect_max", PW_KEY_REAL, AT(method.domain_aspect_max), 0, 1e6, "0", NULL, NULL,
-   "largest ratio of a domain's half-sides, in cells, above which it is reshaped; 0: no limit"},
+   "largest ratio of a domain's half-sides (in cells for points_per_cell) above which it is "
+   "reshaped; 0: no limit"},
   {"mass_cut_off", PW_KEY_REAL, AT(method.mass_cut_off), 0, 0.1, "1e-9", NULL, NULL,
    "nodes with less than this part of a full cell's mass stay at rest"},
   {"noise_damping_per_s", PW_KEY_REAL, AT(method.noise_damping_per_s), 0, 1e6, "0", NULL, NULL,

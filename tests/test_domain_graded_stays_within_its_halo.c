@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Domains on a graded grid: the halo holds every domain its limit allows, wherever it is; limits
  * are in cells of the place where the domain is; and a body flies from coarse to fine cells and
- * back out without leaving its blocks' halo. */
+ * back out without leaving its blocks' halo. Aspects of points of one size are not those of cells. */
 #include <stdlib.h>
 
 #include "tests/engine_scenes.h"
@@ -133,6 +133,34 @@ static void coarse_points_in_fine_cells_are_refused(void **state)
   assert_non_null(strstr(pw_error_text(), "give points_per_cell, or refine it there"));
 }
 
+/* Square points in cells five times as wide as high: with points_per_cell they would be reshaped to
+ * the aspect of the cells, and a load on them would act on another area. */
+static void points_of_one_size_stay_square(void **state)
+{
+  (void)state;
+  static pw_scene s;
+  pw_scene_default(&s);
+  s.grid = (pw_grid){.size_m = {4.0, 2.0},
+                     .cell_m = 0.1,
+                     .fine_x_m = {0.0, 0.5},
+                     .growth = 1.5,
+                     .cell_max_m = 0.5};
+  s.method.domain_aspect_max = 2.0;
+  const int m = test_elastic(&s, 1e6, 0.3, 1000.0);
+  test_rectangle(&s, m, (double[]){2.0, 3.0, 0.5, 1.0}, 0.05);
+  pw_sim *sim = test_sim(&s, 1);
+  for (int k = 0; k < 5; k++) {
+    assert_ok(pw_sim_step(sim, 0.0));
+  }
+  const pw_points *p = &sim->points;
+  assert_int_equal(sim->reshaped, 0);
+  for (pw_idx i = 0; i < p->n; i++) {
+    assert_near(p->half[i], 0.025, 1e-15);
+    assert_near(p->half[3 * p->ld + i], 0.025, 1e-15);
+  }
+  pw_sim_destroy(&sim);
+}
+
 int main(void)
 {
   const struct CMUnitTest tests[] = {
@@ -140,6 +168,7 @@ int main(void)
       cmocka_unit_test(limits_follow_the_cells),
       cmocka_unit_test(a_body_flies_through_the_fine_zone),
       cmocka_unit_test(coarse_points_in_fine_cells_are_refused),
+      cmocka_unit_test(points_of_one_size_stay_square),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }
