@@ -220,8 +220,7 @@ static pw_real find_loose(pw_idx n, pw_real spread, bool by_cells, domains *d)
     const pw_real s2 = d->r[2][i] * inv0, s3 = d->r[3][i] * inv1;
     const pw_real xx = s0 * s0 + s2 * s2, yy = s1 * s1 + s3 * s3;
     const pw_real across = 2.0 * (s0 * s2 + s1 * s3), square = xx + yy;
-    const pw_real a0 = by_cells ? inv0 : 1.0,
-                  a1 = by_cells ? inv1 : 1.0; /* aspects are measured in */
+    const pw_real a0 = by_cells ? inv0 : 1.0, a1 = by_cells ? inv1 : 1.0;
     const pw_real r0 = d->r[0][i] * a0, r1 = d->r[1][i] * a1;
     const pw_real r2 = d->r[2][i] * a0, r3 = d->r[3][i] * a1;
     const pw_real sides = r0 * r0 + r1 * r1 + r2 * r2 + r3 * r3, area = r0 * r3 - r1 * r2;
@@ -337,8 +336,8 @@ pw_idx pw_domain_reach(const pw_mesh *mesh, pw_real limit)
       reach = up > reach ? up : reach;
     }
   }
-  if (mesh->pair_column <
-      mesh->cells[0]) { /* from the lower row: the upper one and two more each */
+  if (mesh->pair_column < mesh->cells[0]) {
+    /* Counted from the lower row of the pair: the upper one, and the limit in rows. */
     const pw_idx rows = 1 + (pw_idx)ceil(2.0 * limit - 1e-9);
     reach = rows > reach ? rows : reach;
   }
