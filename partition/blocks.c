@@ -109,7 +109,21 @@ static void list_by_group(pw_idx n, const pw_idx *group, pw_idx ngroup, pw_idx *
   start[0] = 0;
 }
 
-/* The work of an element is its points, and one for being visited at all. */
+/* The work of an element is its points, and one for being visited at all. What is heavier than an
+ * even part cannot be divided, and METIS would leave parts empty for it: it counts as an even part. */
+static void element_work(const pw_blocks *b, const pw_idx *weight, pw_idx nparts, pw_idx *work)
+{
+  pw_off all = 0;
+  for (pw_idx e = 0; e < b->nelem; e++) {
+    work[e] = 1 + (weight ? weight[e] : 0);
+    all += work[e];
+  }
+  const pw_idx most = (pw_idx)(all / nparts) + 1;
+  for (pw_idx e = 0; e < b->nelem; e++) {
+    work[e] = work[e] < most ? work[e] : most;
+  }
+}
+
 static pw_status divide(const pw_idx *weight, pw_idx nparts, pw_blocks *b)
 {
   pw_graph g = {.n = 0};
@@ -119,9 +133,7 @@ static pw_status divide(const pw_idx *weight, pw_idx nparts, pw_blocks *b)
     s = pw_graph_grid(b->cells, &g);
   }
   if (s == PW_OK) {
-    for (pw_idx e = 0; e < b->nelem; e++) {
-      work[e] = 1 + (weight ? weight[e] : 0);
-    }
+    element_work(b, weight, nparts, work);
     s = pw_order_blocks(&g, work, nparts, b->elem_block);
   }
   pw_mem_free(&work);

@@ -182,12 +182,30 @@ static void bad_input_is_refused(void **state)
   assert_null(b.elem);
 }
 
+/* A pile of points in tall cells: a few elements hold more than an even part each. Hardly a part is left
+ * empty for them (at their full weight METIS would leave a third, and print about it). */
+static void heavy_elements_leave_few_parts_empty(void **state)
+{
+  (void)state;
+  enum { NX = 11, NY = 42, HEAVY = 130, PER_BLOCK = 8 };
+  pw_idx weight[NX * NY];
+  for (int e = 0; e < NX * NY; e++) {
+    weight[e] = e % NX == 0 && e / NX >= 34 ? HEAVY : 1;
+  }
+  pw_blocks b = {0};
+  assert_int_equal(pw_blocks_create((pw_idx[]){NX, NY}, weight, PER_BLOCK, 1, 2, &b), PW_OK);
+  check_lists(&b);
+  assert_in_range(b.nblock, 9 * (NX * NY / PER_BLOCK) / 10, NX * NY / PER_BLOCK);
+  pw_blocks_destroy(&b);
+}
+
 int main(void)
 {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(every_element_is_in_one_block),
       cmocka_unit_test(fewer_elements_than_a_block_make_one_block),
       cmocka_unit_test(blocks_have_even_weight_and_are_connected),
+      cmocka_unit_test(heavy_elements_leave_few_parts_empty),
       cmocka_unit_test(equal_input_gives_equal_blocks),
       cmocka_unit_test(size_comes_from_the_grid_alone),
       cmocka_unit_test(bad_input_is_refused),
