@@ -10,7 +10,8 @@ Runs a scene with each contact at each resolution (radius of the pile over edge 
 after the other, and writes into DIR: table.csv, table.txt, and the plots resistance.png (or
 penetration.png), convergence.png and time.png (gnuplot). A run that already ended with the same
 settings, or failed, is not repeated. --end: when the runs end, one for all or one for each
-resolution; the fine zone of a push then ends just below the last place of the tip. Before each run
+resolution; the fine zone then ends just below the last place of the tip (push) or at 0.75 m of
+depth for each blow (hammer). Before each run
 it says how much time is left, once it can tell. Python's standard library only.
 """
 import argparse
@@ -32,9 +33,17 @@ RADIUS = 0.15                       # m, of the pile in both cases
 DEPTHS = (0.4, 0.8, 1.2, 1.6)       # m, at which the push is compared
 BAND = 0.05                         # m, half of the way over which resistance is averaged
 BLOWS = 4                           # first blows whose sets are listed
-SURFACE = 5.0                       # m, height of the ground in both cases
+SURFACE = {"push": 5.0, "hammer": 10.0}  # m, height of the ground
 BELOW = 0.09                        # m, of fine cells at least below the last place of the tip
 STRIDE = 0.125                      # m, to a multiple of which the fine zone is extended
+FIRST_BLOW, PERIOD = 2.0, 0.5       # s, of the hammer
+PER_BLOW = 0.75                     # m, of fine cells below the ground for each blow
+DEEPEST = 5.5                       # m, of fine cells at most
+# What corner_fine.yaml and the hammered scenes of the other contacts have to save time, for
+# corner.yaml; thin rows go in pairs with the corner contact only.
+SAVING = ["grid.growth=1.35", "grid.cell_max_m=1", "grid.paired_rows_x_m=0.25",
+          "method.noise_damping_per_s=50", "materials.sand.substep_tolerance=0.01",
+          "bodies.soil.refine=[{x_m: [0, 0.25], y_m: [0, 10], points_per_cell: 2}]"]
 
 
 def arguments():
@@ -59,10 +68,17 @@ def arguments():
     return a
 
 
-def fine_zone(end):
-    """Beside the pile, and down to just below where its tip is at the end of a push at 1 m/s."""
-    deep = STRIDE * math.ceil((end + BELOW) / STRIDE)
-    return ["grid.fine_x_m=[0,0.25]", f"grid.fine_y_m=[{SURFACE - deep:g},{SURFACE + STRIDE:g}]"]
+def fine_zone(study, end):
+    """Beside the pile, and down to just below where its tip is at the end of a push at 1 m/s, or
+    to where no hammered pile comes that soon."""
+    ground = SURFACE[study]
+    if study == "push":
+        deep = STRIDE * math.ceil((end + BELOW) / STRIDE)
+        return ["grid.fine_x_m=[0,0.25]",
+                f"grid.fine_y_m=[{ground - deep:g},{ground + STRIDE:g}]"]
+    blows = max(1, math.ceil((end - FIRST_BLOW) / PERIOD))
+    deep = min(PER_BLOW * blows, DEEPEST)
+    return ["grid.fine_x_m=[0,0.25]", f"grid.fine_y_m=[{ground - deep:g},{ground + 0.25:g}]"]
 
 
 def settings(contact, resolution, args):
@@ -73,9 +89,11 @@ def settings(contact, resolution, args):
         sets.append(f"contact_penalty.segment_m={0.4 * cell:.9g}")
     if contact != "corner":
         sets.append(f"bodies.pile.point_size_m={0.4 * cell:.9g}")
+    if args.study == "hammer" and contact == "corner":
+        sets += SAVING
     if end:
         sets.append(f"time.end_s={end:.9g}")
-        sets += fine_zone(end) if args.study == "push" else []
+        sets += fine_zone(args.study, end)
     return sets + args.settings
 
 

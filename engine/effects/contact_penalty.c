@@ -26,6 +26,8 @@ static const pw_key keys[] = {
    "slave segments longer than this many segment_m are split"},
   {"thin_factor", PW_KEY_REAL, AT(thin_factor), 0, 1, "0.4", NULL, NULL,
    "slave segments shorter than this many segment_m are merged; at most 0.45 split_factor"},
+  {"guard_depth_m", PW_KEY_REAL, AT(guard_depth_m), 0, 1e3, "0", NULL, NULL,
+   "springs also on points that leak through the slave's line deeper into the master; 0: none"},
   {0}};
 /* clang-format on */
 
@@ -86,6 +88,9 @@ static pw_status add_forces(pw_sim *sim, void *ctx)
   pw_penalty_search(c, sim->mesh.cell);
   sim->dt_contact = pw_penalty_limit(c, sim->nodes.nnode, sim->dt);
   pw_penalty_forces(c);
+  if (c->param->guard_depth_m > 0.0) {
+    pw_penalty_guard(sim, c);
+  }
   pw_contact_tally_end(&c->tally, sim->measure, sim->dt);
   sim->energy.spring += sim->measure * c->spring;
   sim->energy.contact += sim->measure * c->dissipated;
@@ -179,6 +184,9 @@ static void results(const pw_sim *sim, void *ctx, pw_record *out)
   pw_record_put(out, "contact_splits_refused", (pw_real)c->counts.refused);
   pw_record_put(out, "contact_stiffness_reduced", (pw_real)c->reduced);
   pw_record_put(out, "contact_pairs_detached", (pw_real)c->detached);
+  if (c->param->guard_depth_m > 0.0) {
+    pw_record_put(out, "contact_points_guarded", (pw_real)c->guarded);
+  }
 }
 
 static pw_status archive(pw_sim *sim, void *ctx, pw_archive *ar)
@@ -194,6 +202,9 @@ static pw_status archive(pw_sim *sim, void *ctx, pw_archive *ar)
     const pw_idx owner = c->slave.node[k].touch.owner;
     PW_REQUIRE(owner >= -1 && owner < pw_interface_segments(&c->master), PW_ERR_FILE,
                "the checkpoint's contacts of contact_penalty are damaged");
+  }
+  if (c->param->guard_depth_m > 0.0) {
+    PW_TRY(ar->offset(ar, "contact_penalty/guarded", &c->guarded, 1));
   }
   PW_TRY(ar->offset(ar, "contact_penalty/counts", count, 5));
   c->counts = (pw_refine_counts){count[0], count[1], count[2], 0.0};

@@ -29,6 +29,7 @@ typedef struct pw_penalty {
   pw_refine_counts counts;
   pw_off reduced;  /**< pairs whose stiffness was reduced for a step */
   pw_off detached; /**< pairs without force: a side had no active grid node */
+  pw_off guarded;  /**< guarded points, summed over the steps */
   pw_idx npair;
   pw_active_pair *pair; /**< [slave.capacity] */
   pw_real *stiffness; /**< [2][nnode] sum of stiffnesses at a grid node: slave's, master's field */
@@ -53,5 +54,20 @@ pw_real pw_penalty_limit(pw_penalty *c, pw_idx nnode, pw_real dt);
 
 /** @brief Springs, friction, forces on the grid (eq. 2.48, 2.52), tally. */
 void pw_penalty_forces(pw_penalty *c);
+
+/**
+ * @brief Springs on points of the slave that leak through its line.
+ *
+ * Points and interface nodes move in different interpolations of one velocity field, so under a
+ * tip single points come past the line, where nothing holds them: they fly through the master and
+ * leave the grid. A point that is deeper in the master than guard_depth_m is pushed back by a
+ * spring on the difference, of the contact's normal stiffness and the area of the point; without
+ * friction. To be called after pw_penalty_forces(), whose tally and energies it adds to.
+ */
+void pw_penalty_guard(pw_sim *sim, pw_penalty *c);
+
+/** @brief Add the forces @p f [4] (node 1, node 2 of the segment; x and y each) to the master's grid
+ *         nodes and to the tally. */
+void pw_penalty_on_master(pw_penalty *c, pw_idx segment, const pw_real *f);
 
 #endif /* PW_EFFECTS_CONTACT_PENALTY_H */

@@ -208,19 +208,24 @@ static void pair_force(pw_penalty *c, const pw_active_pair *p, pw_real *f)
   pw_pair_force(cn, ct, pressure, c->omega_t * t->slip, p->area, f);
 }
 
+void pw_penalty_on_master(pw_penalty *c, pw_idx segment, const pw_real *f)
+{
+  const pw_interface_node *a = &c->master.node[segment];
+  const pw_interface_node *b = &c->master.node[pw_interface_next(&c->master, segment)];
+  scatter(c, a, 1, f);
+  scatter(c, b, 1, f + 2);
+  pw_real on_master[2] = {f[0] + f[2], f[1] + f[3]};
+  pw_contact_tally_add(&c->tally, on_master, a->tip && b->tip);
+}
+
 void pw_penalty_forces(pw_penalty *c)
 {
   for (pw_idx i = 0; i < c->npair; i++) {
     const pw_active_pair *p = &c->pair[i];
-    const pw_interface_node *a = &c->master.node[p->segment];
-    const pw_interface_node *b = &c->master.node[pw_interface_next(&c->master, p->segment)];
     pw_real f[6];
     pair_force(c, p, f);
     scatter(c, &c->slave.node[p->slave], 0, f);
-    scatter(c, a, 1, f + 2);
-    scatter(c, b, 1, f + 4);
-    pw_real on_master[2] = {f[2] + f[4], f[3] + f[5]};
-    pw_contact_tally_add(&c->tally, on_master, a->tip && b->tip);
+    pw_penalty_on_master(c, p->segment, f + 2);
     c->tally.pairs += p->area > 0.0 && c->slave.node[p->slave].touch.overlap > 0.0 ? 1 : 0;
   }
 }
