@@ -12,7 +12,7 @@
 
 #include <math.h>
 
-static const pw_real pi = 3.14159265358979323846;
+static const pw_real pi = PW_PI;
 
 /* Sector j of ring k: half angle a, between the radii (k -+ 1/2) t. */
 static void add_sector(const pw_scene_body *b, pw_real t, pw_real k, pw_real j,

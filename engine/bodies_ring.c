@@ -10,7 +10,7 @@
 
 #include <math.h>
 
-static const pw_real pi = 3.14159265358979323846;
+static const pw_real pi = PW_PI;
 
 typedef struct {
   pw_real r[2];   /* radii; m */

@@ -109,7 +109,7 @@ pw_real pw_hypo_friction_angle(pw_t6 shifted)
   pw_real i2 = 3.0 * third * third - j2;
   pw_real i3 = third * (third * third - j2) + j3;
   if (!(i1 > 0.0 && i2 > 0.0 && i3 > 0.0)) {
-    return 0.5 * 3.14159265358979323846;
+    return 0.5 * PW_PI;
   }
   /* X - 9 from the deviator itself: it vanishes as its square. */
   pw_real above = (6.0 * third * j2 - 9.0 * j3) / i3;

@@ -123,6 +123,31 @@ static void given_motion_is_followed_and_balanced(void **state)
   }
 }
 
+/* The place of a body that vibrates is exact at the ends of steps of any length: v t + a sin(2 pi f t). */
+static void vibration_is_followed(void **state)
+{
+  (void)state;
+  const pw_real v = -0.5, a = 0.01, f = 12.0, start = 0.02;
+  pw_scene scene;
+  falling_block(&scene, 0.0);
+  pw_prescribed_motion_param *m = pw_scene_add_effect(&scene, "prescribed_motion");
+  *m = (pw_prescribed_motion_param){.velocity_m_s = {0.0, v},
+                                    .start_s = start,
+                                    .vibration_amplitude_m = a,
+                                    .vibration_frequency_hz = f};
+  pw_sim *sim = test_sim(&scene, 1);
+  const pw_real y0 = value_of(sim, "body0_y_m");
+  pw_real largest = 0.0;
+  while (sim->time < 0.2) {
+    assert_ok(pw_sim_step(sim, 0.0));
+    const pw_real since = pw_max(sim->time - start, 0.0), swing = a * sin(2.0 * PW_PI * f * since);
+    assert_near(value_of(sim, "body0_y_m") - y0, v * since + swing, 1e-12);
+    largest = pw_max(largest, fabs(swing));
+  }
+  assert_true(largest > 0.99 * a);
+  pw_sim_destroy(&sim);
+}
+
 static void given_motion_needs_its_own_field(void **state)
 {
   (void)state;
@@ -131,6 +156,9 @@ static void given_motion_needs_its_own_field(void **state)
   pw_prescribed_motion_param *m = pw_scene_add_effect(&scene, "prescribed_motion");
   const pw_effect *type = pw_effect_find("prescribed_motion");
   m->body = 0;
+  m->vibration_frequency_hz = 20.0;
+  assert_int_equal(type->check(&scene, m), PW_ERR_SCENE);
+  m->vibration_frequency_hz = 0.0;
   assert_int_equal(type->check(&scene, m), PW_OK);
   test_rectangle(&scene, 0, (pw_real[4]){1.5, 2.0, 0.1, 0.6}, 0.125);
   assert_int_equal(type->check(&scene, m), PW_ERR_SCENE);
@@ -231,6 +259,7 @@ int main(void)
       cmocka_unit_test(damped_fall_is_slower_and_damped_rise_shorter),
       cmocka_unit_test(damped_column_settles_with_its_energy_accounted_for),
       cmocka_unit_test(given_motion_is_followed_and_balanced),
+      cmocka_unit_test(vibration_is_followed),
       cmocka_unit_test(given_motion_needs_its_own_field),
       cmocka_unit_test(walls_may_move_and_stress_be_let_go),
       cmocka_unit_test(steps_beyond_the_limit_are_stopped),

@@ -14,6 +14,8 @@ typedef double pw_real; /**< every physical quantity, SI units */
 typedef int32_t pw_idx; /**< point, node, element, block index */
 typedef int64_t pw_off; /**< offsets into CSR arrays, byte and step counts */
 
+#define PW_PI 3.14159265358979323846
+
 enum {
   PW_ALIGN = 64, /**< bytes; one cache line, one AVX-512 vector */
   PW_LANES = 8,  /**< doubles in one alignment unit; arrays are padded to a multiple of it */

@@ -18,6 +18,7 @@ typedef struct pw_contact_penalty_param {
   pw_real segment_m;                 /**< 0: half a cell */
   pw_real thickness_m;
   pw_real split_factor, thin_factor;
+  pw_real step_frequency_max; /**< largest step times the frequency of the springs */
   pw_real guard_depth_m; /**< points that come deeper into the master get springs; 0: none do */
 } pw_contact_penalty_param;
 

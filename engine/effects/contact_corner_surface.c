@@ -5,7 +5,7 @@
 
 #include "engine/core/mem.h"
 
-static const pw_real PI = 3.14159265358979323846;
+static const pw_real PI = PW_PI;
 /* Of 1 + cos(turn) at a vertex: sharper ones are cut off. */
 static const pw_real SHARPEST = 0.1;
 /* Part of a segment that the rounding of its ends may take. */

@@ -26,6 +26,8 @@ static const pw_key keys[] = {
    "slave segments longer than this many segment_m are split"},
   {"thin_factor", PW_KEY_REAL, AT(thin_factor), 0, 1, "0.4", NULL, NULL,
    "slave segments shorter than this many segment_m are merged; at most 0.45 split_factor"},
+  {"step_frequency_max", PW_KEY_REAL, AT(step_frequency_max), PW_TINY, 0.7, "0.2", NULL, NULL,
+   "largest step times the frequency of the springs; longer ones need fewer steps, 2 is unstable"},
   {"guard_depth_m", PW_KEY_REAL, AT(guard_depth_m), 0, 1e3, "0", NULL, NULL,
    "springs also on points that leak through the slave's line deeper into the master; 0: none"},
   {0}};

@@ -48,7 +48,7 @@ void pw_penalty_search(pw_penalty *c, pw_real reach);
  *
  * The row sums of the pairs' stiffness over the masses of their grid nodes bound the square of
  * their highest frequency; for one pair alone it is k / m_eff, 1 / m_eff = sum N^2 / m.
- * @return the largest step that resolves every pair, 0.2 / frequency; 0 without pairs; s.
+ * @return the largest step that resolves every pair, step_frequency_max / frequency; 0 without pairs; s.
  */
 pw_real pw_penalty_limit(pw_penalty *c, pw_idx nnode, pw_real dt);
 

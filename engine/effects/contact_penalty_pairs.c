@@ -5,10 +5,8 @@
 
 #include <math.h>
 
-/* Steps resolve the highest frequency of the contact by this: dt = RESOLVE / omega. */
-static const pw_real RESOLVE = 0.2;
-/* Square of the most that dt omega may be in a step chosen by others. */
-static const pw_real LIMIT2 = 0.25;
+/* Most that dt omega may be in a step chosen by others, and that in the longest of its own. */
+static const pw_real LEAST_LIMIT = 0.5, LIMIT_TO_LONGEST = 2.0;
 /* Overlap that was not made by motion is worked out by this part of the sliding, as by a wedge. */
 static const pw_real WORK_OUT = 0.25;
 
@@ -164,6 +162,8 @@ static pw_real pair_rate(const pw_penalty *c, pw_idx nnode, const pw_active_pair
 
 pw_real pw_penalty_limit(pw_penalty *c, pw_idx nnode, pw_real dt)
 {
+  const pw_real longest = c->param->step_frequency_max;
+  const pw_real limit = pw_max(LEAST_LIMIT, LIMIT_TO_LONGEST * longest), limit2 = limit * limit;
   pw_real omega = pw_max(c->omega_n, c->omega_t), largest = 0.0;
   spread_stiffness(c, nnode, omega);
   for (pw_idx i = 0; i < c->npair; i++) {
@@ -172,13 +172,13 @@ pw_real pw_penalty_limit(pw_penalty *c, pw_idx nnode, pw_real dt)
     if (rate < 0.0) {
       c->pair[i].area = 0.0;
       c->detached++;
-    } else if (rate * dt * dt > LIMIT2) {
-      c->pair[i].area *= LIMIT2 / (rate * dt * dt);
+    } else if (rate * dt * dt > limit2) {
+      c->pair[i].area *= limit2 / (rate * dt * dt);
       c->reduced++;
     }
   }
   spread_stiffness(c, nnode, 0.0);
-  return largest > 0.0 ? RESOLVE / sqrt(largest) : 0.0;
+  return largest > 0.0 ? longest / sqrt(largest) : 0.0;
 }
 
 static void scatter(const pw_penalty *c, const pw_interface_node *a, int side, const pw_real *f)

@@ -144,7 +144,7 @@ static pw_status create(pw_sim *sim, const void *param, void **ctx)
   PW_TRY(pw_mem_alloc("gravity", 1, sizeof *c, &c));
   *ctx = c;
   c->param = param;
-  pw_real tilt = c->param->tilt_deg * (3.14159265358979323846 / 180.0);
+  pw_real tilt = c->param->tilt_deg * (PW_PI / 180.0);
   c->tilted[0] = sin(tilt);
   c->tilted[1] = -cos(tilt);
   sim->load_factor = c->param->ramp_s > 0.0 ? 0.0 : 1.0;

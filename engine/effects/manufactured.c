@@ -5,7 +5,7 @@
 
 #include "engine/effects/params.h"
 
-static const pw_real pi = 3.14159265358979323846;
+static const pw_real pi = PW_PI;
 
 static pw_real youngs_modulus(const pw_mms *m)
 {

@@ -99,6 +99,7 @@ typedef struct pw_prescribed_motion_param {
   int body;
   pw_real velocity_m_s[2];
   pw_real start_s, ramp_s;
+  pw_real vibration_amplitude_m, vibration_frequency_hz; /**< along y, from start_s on */
 } pw_prescribed_motion_param;
 
 /** boundary (many): given velocity components at nodes of the grid. */

@@ -6,6 +6,9 @@
  * the forces on its nodes, contact included: R = M (v - v_old) / dt - sum m (v(n+1) - v(n)) / dt
  * with the velocities before they are overwritten.
  *
+ * A vibration adds a sin(2 pi f (t - start)) to the place along y. The velocity of a step is the mean
+ * over it, so that the places at its ends are exact.
+ *
  * A body without points keeps that force and its work itself (engine/structure.h); of a rod it is
  * the head that moves as given.
  */
@@ -13,6 +16,7 @@
 #include "engine/effects/load_curve.h"
 #include "engine/effects/params.h"
 
+#include <math.h>
 #include <stdio.h>
 #include <string.h>
 
@@ -30,6 +34,10 @@ static const pw_key keys[] = {
    "time at which it starts to move; it is held at rest before"},
   {"ramp_s", PW_KEY_REAL, AT(ramp_s), 0, 1e12, "0", NULL, NULL,
    "time over which the velocity grows linearly from zero; 0: at once"},
+  {"vibration_amplitude_m", PW_KEY_REAL, AT(vibration_amplitude_m), 0, 1e6, "0", NULL, NULL,
+   "it vibrates along y besides, up to so far to each side of the place that velocity_m_s gives"},
+  {"vibration_frequency_hz", PW_KEY_REAL, AT(vibration_frequency_hz), 0, 1e9, "0", NULL, NULL,
+   "full swings per second"},
   {0}};
 /* clang-format on */
 
@@ -51,9 +59,19 @@ static pw_status check(const pw_scene *scene, const void *param)
              "velocity_m_s: the rod '%s' moves along y only", b->name);
   PW_REQUIRE(scene->nbody == 1 || pw_scene_contacts(scene) > 0 || b->kind != PW_BODY_POINTS,
              PW_ERR_SCENE, "body '%s' needs its own velocity field: add a contact effect", b->name);
+  PW_REQUIRE((p->vibration_amplitude_m > 0.0) == (p->vibration_frequency_hz > 0.0), PW_ERR_SCENE,
+             "vibration_amplitude_m = %g and vibration_frequency_hz = %g: a vibration needs both",
+             p->vibration_amplitude_m, p->vibration_frequency_hz);
   PW_REQUIRE(scene->geometry != PW_AXI || p->velocity_m_s[0] == 0.0, PW_ERR_SCENE,
              "velocity_m_s: in axisymmetry a body cannot be moved along the radius");
   return PW_OK;
+}
+
+/* Displacement along y that the vibration adds at time t. */
+static pw_real vibration(const pw_prescribed_motion_param *p, pw_real t)
+{
+  const pw_real since = pw_max(t - p->start_s, 0.0);
+  return p->vibration_amplitude_m * sin(2.0 * PW_PI * p->vibration_frequency_hz * since);
 }
 
 static pw_status begin(pw_sim *sim, void *ctx)
@@ -65,6 +83,9 @@ static pw_status begin(pw_sim *sim, void *ctx)
   b->prescribed = true;
   for (int a = 0; a < 2; a++) {
     b->prescribed_v[a] = ramp * p->velocity_m_s[a];
+  }
+  if (p->vibration_amplitude_m > 0.0) {
+    b->prescribed_v[1] += (vibration(p, sim->time + sim->dt) - vibration(p, sim->time)) / sim->dt;
   }
   const pw_idx n = sim->points.n, ld = sim->points.ld, body = p->body;
   const pw_idx *of = sim->points.body;

@@ -46,7 +46,7 @@ const pw_driven_boundary_param *pw_solid_driven_param(const pw_scene *scene)
 
 static pw_real radians(pw_real degrees)
 {
-  return degrees * (acos(-1.0) / 180.0);
+  return degrees * (PW_PI / 180.0);
 }
 
 static void unit(const pw_real *axis, pw_real *out)
