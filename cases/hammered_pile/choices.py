@@ -33,6 +33,11 @@ def stiffness(value):
     return [f"contact_penalty.{way}_stiffness_pa_m={value}" for way in ("normal", "tangential")]
 
 
+def across(size):
+    """Points of one size that is no part of a cell, so that they lie across the cells."""
+    return [f"bodies.soil.point_size_m={size}", f"bodies.soil.refine.0.point_size_m={size}"]
+
+
 # name: (contacts, settings)
 GRAVITY = {
     "as shipped": (BOTH, []),
@@ -46,8 +51,13 @@ GRAVITY = {
     "cfl 0.9": (PENALTY, ["time.cfl=0.9"]),
     "domain limit half a cell": (PENALTY, ["method.domain_limit_cells=0.5"]),
     "one point a cell": (BOTH, ["bodies.soil.refine.0.point_size_m=0.125"]),
-    "points of 0.07 m across the cells": (BOTH, ["bodies.soil.point_size_m=0.0704",
-                                                 "bodies.soil.refine.0.point_size_m=0.0704"]),
+    "points of 0.065 m across the cells": (BOTH, across(0.065)),
+    "points of 0.067 m across the cells": (BOTH, across(0.0667)),
+    "points of 0.068 m across the cells": (BOTH, across(0.068)),
+    "points of 0.07 m across the cells": (BOTH, across(0.0704)),
+    "points of 0.072 m across the cells": (BOTH, across(0.072)),
+    "points of 0.073 m across the cells": (BOTH, across(0.0735)),
+    "points of 0.076 m across the cells": (BOTH, across(0.076)),
     "16 points a cell near the pile": (BOTH, ["bodies.soil.refine.0.x_m=[0,1.25]",
                                               "bodies.soil.refine.0.y_m=[5,10]",
                                               "bodies.soil.refine.0.point_size_m=0.03125"]),
