@@ -110,7 +110,7 @@ static void list_by_group(pw_idx n, const pw_idx *group, pw_idx ngroup, pw_idx *
 }
 
 /* The work of an element is its points, and one for being visited at all. What is heavier than an
- * even part cannot be divided, and METIS would leave parts empty for it: it counts as an even part. */
+ * even part cannot be divided, and METIS would leave parts empty for it: it counts as one. */
 static void element_work(const pw_blocks *b, const pw_idx *weight, pw_idx nparts, pw_idx *work)
 {
   pw_off all = 0;

@@ -182,8 +182,8 @@ static void bad_input_is_refused(void **state)
   assert_null(b.elem);
 }
 
-/* A pile of points in tall cells: a few elements hold more than an even part each. Hardly a part is left
- * empty for them (at their full weight METIS would leave a third, and print about it). */
+/* A pile of points in tall cells: a few elements hold more than an even part each. Hardly a part is
+ * left empty for them (at their full weight METIS would leave two fifths, and print about it). */
 static void heavy_elements_leave_few_parts_empty(void **state)
 {
   (void)state;

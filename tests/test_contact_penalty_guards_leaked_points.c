@@ -1,9 +1,10 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* contact_penalty.guard_depth_m: a point of the slave that is deeper in the master is pushed out by a
- * spring of the contact's stiffness on its own area. Alone in its cell it is a mass on a spring, so
- * its depth after n steps is d cos((n + 1/2) p) / cos(p / 2), sin(p / 2) = sqrt(k / m) dt / 2, the
- * solution of the difference equation of symplectic steps; k = stiffness times the side of the
- * point (plane strain). The master feels the spring's force. Where no point leaks the key changes no bit. */
+/* contact_penalty.guard_depth_m: a point of the slave that is deeper in the master is pushed out by
+ * a spring of the contact's stiffness on its own area. Alone in its cell it is a mass on a spring,
+ * so its depth after n steps is d cos((n + 1/2) p) / cos(p / 2), sin(p / 2) = sqrt(k / m) dt / 2,
+ * the solution of the difference equation of symplectic steps; k = stiffness times the side of the
+ * point (plane strain). The master feels the spring's force. Where no point leaks the key changes
+ * no bit. */
 #include "engine/effects/contact_penalty.h"
 #include "tests/contact_helpers.h"
 
@@ -33,8 +34,9 @@ static pw_sim *resting(bool guarded)
   return test_sim(&s, 2);
 }
 
-/* A point is put into the punch, depth plus what is allowed from its left side and farther from the others, alone in
- * its cell and so that it stays there; it is followed until half of that is left. */
+/* A point is put into the punch, depth plus what is allowed from its left side and farther from the
+ * others, alone in its cell and so that it stays there; it is followed until half of that is
+ * left. */
 static void leak(bool guarded)
 {
   pw_sim *sim = resting(guarded);
@@ -77,6 +79,99 @@ static void without_the_key_it_stays(void **state)
   leak(false);
 }
 
+/* A block under a free punch on the axis of symmetry, a point just below the punch's top: the
+ * spring on r times the side of the point pushes it up and the punch down, and together they keep
+ * the momentum of zero. */
+static void a_free_master_takes_the_reaction(void **state)
+{
+  (void)state;
+  static pw_scene s; /* large */
+  pw_scene_default(&s);
+  s.geometry = PW_AXI;
+  test_grid(&s, (pw_real[]){0.0, 2.0, 0.0, 2.5}, CELL);
+  int soft = test_neo_hookean(&s, 1e5, 5e4, DENSITY), stiff = test_elastic(&s, 1e7, 0.2, 2500.0);
+  test_rectangle(&s, soft, (pw_real[]){0.0, 2.0, 0.0, 1.0}, SIZE);
+  test_rectangle(&s, stiff, (pw_real[]){0.0, 0.5, 1.0, 1.75}, SIZE);
+  test_add_contact(&s, TEST_PENALTY, 1, 0, 0.4, STIFFNESS, SIZE);
+  guard(&s);
+  pw_contact_penalty_param *contact = (void *)pw_scene_find_effect(&s, "contact_penalty");
+  contact->thickness_m = 0.0; /* points hold all momentum */
+  pw_sim *sim = test_sim(&s, 2);
+  pw_points *p = &sim->points;
+  const pw_real depth = 0.1, stretch = depth - ALLOWED;
+  p->x[p->slot[1]] = 0.1875;
+  p->x[p->ld + p->slot[1]] = 1.75 - depth;
+  sim->sort_needed = true;
+  const pw_real k = STIFFNESS * sqrt(p->vol[p->slot[1]] * 0.1875);
+  sim->energy.external += PW_PI * k * stretch * stretch; /* put there against the spring */
+  for (int step = 0; step < 50; step++) {
+    pw_real soil[5], punch[5];
+    assert_ok(pw_sim_step(sim, DT));
+    const pw_contact_tally *t = pw_contact_tally_of(sim);
+    if (step == 0) {
+      assert_relative(t->force[PW_REACTION_Y], -2.0 * PW_PI * k * stretch, 1e-9);
+    }
+    test_body_sums(sim, 0, soil);
+    test_body_sums(sim, 1, punch);
+    assert_true(punch[2] < 0.0);
+    assert_near(soil[2] + punch[2], 0.0, 1e-12 * fabs(punch[2]));
+  }
+  pw_sim_destroy(&sim);
+}
+
+/* Beside the round tip of a pile, in the box around it: outside, and left alone. */
+static void beside_the_tip_is_outside(void **state)
+{
+  (void)state;
+  static pw_scene s; /* large */
+  pw_scene_default(&s);
+  s.geometry = PW_AXI;
+  test_grid(&s, (pw_real[]){0.0, 2.0, 0.0, 2.5}, CELL);
+  int soft = test_neo_hookean(&s, 1e5, 5e4, DENSITY), stiff = test_elastic(&s, 1e7, 0.2, 2500.0);
+  test_rectangle(&s, soft, (pw_real[]){0.0, 2.0, 0.0, 1.0}, SIZE);
+  s.body[s.nbody++] = (pw_scene_body){.name = "pile",
+                                      .material = stiff,
+                                      .shape = PW_SHAPE_PILE,
+                                      .radius_m = 0.4,
+                                      .tip_y_m = 1.0,
+                                      .length_m = 1.0,
+                                      .tip = PW_TIP_ROUNDED,
+                                      .tip_length_m = 0.4,
+                                      .point_size_m = 0.1};
+  test_hold(&s, 1);
+  test_add_contact(&s, TEST_PENALTY, 1, 0, 0.4, STIFFNESS, 0.05);
+  guard(&s);
+  pw_sim *sim = test_sim(&s, 1);
+  const pw_penalty *c = pw_sim_effect_ctx(sim, "contact_penalty");
+  const pw_real places[][3] = {{0.375, 1.02, 0}, {0.3, 1.05, 0}, {0.06, 1.2, 1}};
+  for (int k = 0; k < 3; k++) {
+    const pw_off before = c->guarded;
+    const pw_idx i = sim->points.slot[3];
+    sim->points.x[i] = places[k][0];
+    sim->points.x[sim->points.ld + i] = places[k][1];
+    sim->points.v[i] = sim->points.v[sim->points.ld + i] = 0.0;
+    sim->energy.external += 1e6; /* whatever the spring holds */
+    sim->sort_needed = true;
+    assert_ok(pw_sim_step(sim, 1e-7));
+    assert_int_equal(c->guarded - before, (pw_off)places[k][2]);
+  }
+  pw_sim_destroy(&sim);
+}
+
+static void what_begins_deep_is_refused(void **state)
+{
+  (void)state;
+  static pw_scene s; /* large */
+  test_drop(&s, TEST_PENALTY, PW_PLANE, -0.125);
+  guard(&s);
+  pw_sim *sim = NULL;
+  assert_int_equal(pw_sim_create(&s, 1, &sim), PW_ERR_SCENE);
+  assert_non_null(strstr(pw_error_text(), "0.0625 m deep in 'body1' at the start"));
+  s.method.step_ratio_max = 8;
+  const pw_effect *type = pw_effect_find("contact_penalty");
+  assert_int_equal(type->check(&s, pw_scene_find_effect(&s, "contact_penalty")), PW_ERR_SCENE);
+}
+
 static void no_leak_no_change(void **state)
 {
   (void)state;
@@ -103,6 +198,9 @@ int main(void)
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(a_leaked_point_is_pushed_out),
       cmocka_unit_test(without_the_key_it_stays),
+      cmocka_unit_test(a_free_master_takes_the_reaction),
+      cmocka_unit_test(beside_the_tip_is_outside),
+      cmocka_unit_test(what_begins_deep_is_refused),
       cmocka_unit_test(no_leak_no_change),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* contact_penalty.step_frequency_max: a punch falls on a block and rebounds, with the default of 0.2
- * and with 0.5. The springs set the steps, so that there are fewer of them. What of the energy is not
- * accounted for (the impact on so coarse a grid makes it, whatever the steps) grows by less than 1 %
- * of what the punch brings. */
+/* contact_penalty.step_frequency_max: a punch falls on a block and rebounds, with the default of
+ * 0.2 and with 0.5. The springs set the steps, so that there are fewer of them. What of the energy
+ * is not accounted for (the impact on so coarse a grid makes it, whatever the steps) grows by less
+ * than 1 % of what the punch brings. */
 #include "tests/contact_helpers.h"
 
 /* Steps until the punch has rebounded; energy not accounted for over that of the punch. */

@@ -38,7 +38,8 @@ BELOW = 0.09                        # m, of fine cells at least below the last p
 STRIDE = 0.125                      # m, to a multiple of which the fine zone is extended
 FIRST_BLOW, PERIOD = 2.0, 0.5       # s, of the hammer
 PER_BLOW = 0.75                     # m, of fine cells below the ground for each blow
-DEEPEST = 5.5                       # m, of fine cells at most
+LEAST, DEEPEST = 1.25, 5.5          # m, of fine cells below the ground
+LAST = 12.0                         # s, end of the hammered scenes
 # What corner_fine.yaml and the hammered scenes of the other contacts have to save time, for
 # corner.yaml; thin rows go in pairs with the corner contact only.
 SAVING = ["grid.growth=1.35", "grid.cell_max_m=1", "grid.paired_rows_x_m=0.25",
@@ -77,7 +78,7 @@ def fine_zone(study, end):
         return ["grid.fine_x_m=[0,0.25]",
                 f"grid.fine_y_m=[{ground - deep:g},{ground + STRIDE:g}]"]
     blows = max(1, math.ceil((end - FIRST_BLOW) / PERIOD))
-    deep = min(PER_BLOW * blows, DEEPEST)
+    deep = min(max(PER_BLOW * blows, LEAST), DEEPEST)
     return ["grid.fine_x_m=[0,0.25]", f"grid.fine_y_m=[{ground - deep:g},{ground + 0.25:g}]"]
 
 
@@ -93,7 +94,8 @@ def settings(contact, resolution, args):
         sets += SAVING
     if end:
         sets.append(f"time.end_s={end:.9g}")
-        sets += fine_zone(args.study, end)
+    if end or args.study == "hammer":
+        sets += fine_zone(args.study, end or LAST)
     return sets + args.settings
 
 

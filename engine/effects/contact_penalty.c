@@ -29,7 +29,8 @@ static const pw_key keys[] = {
   {"step_frequency_max", PW_KEY_REAL, AT(step_frequency_max), PW_TINY, 0.7, "0.2", NULL, NULL,
    "largest step times the frequency of the springs; longer ones need fewer steps, 2 is unstable"},
   {"guard_depth_m", PW_KEY_REAL, AT(guard_depth_m), 0, 1e3, "0", NULL, NULL,
-   "springs also on points that leak through the slave's line deeper into the master; 0: none"},
+   "springs on points that leak through the slave's line deeper into the master; none may be there "
+   "at the start; 0: no springs"},
   {0}};
 /* clang-format on */
 
@@ -49,6 +50,11 @@ static pw_status check(const pw_scene *scene, const void *param)
       p->thin_factor <= 0.45 * p->split_factor, PW_ERR_SCENE,
       "thin_factor = %g must be at most 0.45 split_factor, %g, or split segments merge again",
       p->thin_factor, 0.45 * p->split_factor);
+  const pw_scene_body *master = &scene->body[p->master];
+  PW_REQUIRE(p->guard_depth_m <= 0.0 || scene->method.step_ratio_max <= 1, PW_ERR_SCENE,
+             "guard_depth_m: not with step_ratio_max = %d", (int)scene->method.step_ratio_max);
+  PW_REQUIRE(p->guard_depth_m <= 0.0 || master->shape != PW_SHAPE_RING, PW_ERR_SCENE,
+             "guard_depth_m: not with '%s', whose hole would count as its inside", master->name);
   return PW_OK;
 }
 
@@ -91,7 +97,9 @@ static pw_status add_forces(pw_sim *sim, void *ctx)
   sim->dt_contact = pw_penalty_limit(c, sim->nodes.nnode, sim->dt);
   pw_penalty_forces(c);
   if (c->param->guard_depth_m > 0.0) {
-    pw_penalty_guard(sim, c);
+    const pw_real dt = pw_penalty_guard(sim, c);
+    sim->dt_contact = dt > 0.0 && sim->dt_contact > 0.0 ? pw_min(dt, sim->dt_contact)
+                                                        : pw_max(dt, sim->dt_contact);
   }
   pw_contact_tally_end(&c->tally, sim->measure, sim->dt);
   sim->energy.spring += sim->measure * c->spring;
@@ -142,6 +150,7 @@ static pw_status build(pw_sim *sim, const pw_contact_penalty_param *p, pw_penalt
       pw_interface_from_body(&sim->scene, p->slave, p->master, segment, p->thickness_m, &c->slave));
   PW_TRY(pw_interface_from_body(&sim->scene, p->master, -1, segment, p->thickness_m, &c->master));
   PW_TRY(pw_bins_create(&c->master, &sim->mesh, &c->bins));
+  PW_TRY(pw_penalty_guard_check(sim, c));
   PW_TRY(pw_mem_alloc("contact pairs", c->slave.capacity, sizeof *c->pair, &c->pair));
   return pw_mem_alloc("contact stiffness", 2 * (pw_off)sim->mesh.nnode, sizeof(pw_real),
                       &c->stiffness);
@@ -187,7 +196,7 @@ static void results(const pw_sim *sim, void *ctx, pw_record *out)
   pw_record_put(out, "contact_stiffness_reduced", (pw_real)c->reduced);
   pw_record_put(out, "contact_pairs_detached", (pw_real)c->detached);
   if (c->param->guard_depth_m > 0.0) {
-    pw_record_put(out, "contact_points_guarded", (pw_real)c->guarded);
+    pw_record_put(out, "contact_guarded_point_steps", (pw_real)c->guarded);
   }
 }
 

@@ -48,7 +48,8 @@ void pw_penalty_search(pw_penalty *c, pw_real reach);
  *
  * The row sums of the pairs' stiffness over the masses of their grid nodes bound the square of
  * their highest frequency; for one pair alone it is k / m_eff, 1 / m_eff = sum N^2 / m.
- * @return the largest step that resolves every pair, step_frequency_max / frequency; 0 without pairs; s.
+ * @return the largest step that resolves every pair, step_frequency_max / frequency; 0 without
+ *         pairs; s.
  */
 pw_real pw_penalty_limit(pw_penalty *c, pw_idx nnode, pw_real dt);
 
@@ -63,11 +64,17 @@ void pw_penalty_forces(pw_penalty *c);
  * leave the grid. A point that is deeper in the master than guard_depth_m is pushed back by a
  * spring on the difference, of the contact's normal stiffness and the area of the point; without
  * friction. To be called after pw_penalty_forces(), whose tally and energies it adds to.
+ * @return the largest step that resolves every spring, as pw_penalty_limit(). Where the present
+ *         one is far longer the spring is weaker for it, and its energy is not accounted for.
  */
-void pw_penalty_guard(pw_sim *sim, pw_penalty *c);
+pw_real pw_penalty_guard(pw_sim *sim, pw_penalty *c);
 
-/** @brief Add the forces @p f [4] (node 1, node 2 of the segment; x and y each) to the master's grid
- *         nodes and to the tally. */
+/** @brief No point of the slave is deeper in the master at the start than guard_depth_m: the energy
+ *         of its spring would come from nothing. @return PW_OK; PW_ERR_SCENE naming the deepest. */
+pw_status pw_penalty_guard_check(const pw_sim *sim, const pw_penalty *c);
+
+/** @brief Add the forces @p f [4] (node 1, node 2 of the segment; x and y each) to the master's
+ *         grid nodes and to the tally. */
 void pw_penalty_on_master(pw_penalty *c, pw_idx segment, const pw_real *f);
 
 #endif /* PW_EFFECTS_CONTACT_PENALTY_H */

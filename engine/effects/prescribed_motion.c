@@ -6,8 +6,8 @@
  * the forces on its nodes, contact included: R = M (v - v_old) / dt - sum m (v(n+1) - v(n)) / dt
  * with the velocities before they are overwritten.
  *
- * A vibration adds a sin(2 pi f (t - start)) to the place along y. The velocity of a step is the mean
- * over it, so that the places at its ends are exact.
+ * A vibration adds a sin(2 pi f (t - start)) to the place along y. The velocity of a step is the
+ * mean over it, so that the places at its ends are exact; points must make every step for that.
  *
  * A body without points keeps that force and its work itself (engine/structure.h); of a rod it is
  * the head that moves as given.
@@ -35,7 +35,7 @@ static const pw_key keys[] = {
   {"ramp_s", PW_KEY_REAL, AT(ramp_s), 0, 1e12, "0", NULL, NULL,
    "time over which the velocity grows linearly from zero; 0: at once"},
   {"vibration_amplitude_m", PW_KEY_REAL, AT(vibration_amplitude_m), 0, 1e6, "0", NULL, NULL,
-   "it vibrates along y besides, up to so far to each side of the place that velocity_m_s gives"},
+   "from start_s on it vibrates along y besides, at once in full, so far to each side"},
   {"vibration_frequency_hz", PW_KEY_REAL, AT(vibration_frequency_hz), 0, 1e9, "0", NULL, NULL,
    "full swings per second"},
   {0}};
@@ -62,6 +62,10 @@ static pw_status check(const pw_scene *scene, const void *param)
   PW_REQUIRE((p->vibration_amplitude_m > 0.0) == (p->vibration_frequency_hz > 0.0), PW_ERR_SCENE,
              "vibration_amplitude_m = %g and vibration_frequency_hz = %g: a vibration needs both",
              p->vibration_amplitude_m, p->vibration_frequency_hz);
+  PW_REQUIRE(p->vibration_amplitude_m <= 0.0 || b->kind != PW_BODY_POINTS ||
+                 scene->method.step_ratio_max <= 1,
+             PW_ERR_SCENE, "a vibration of the points of '%s': not with step_ratio_max = %d",
+             b->name, (int)scene->method.step_ratio_max);
   PW_REQUIRE(scene->geometry != PW_AXI || p->velocity_m_s[0] == 0.0, PW_ERR_SCENE,
              "velocity_m_s: in axisymmetry a body cannot be moved along the radius");
   return PW_OK;
