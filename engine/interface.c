@@ -229,11 +229,34 @@ static inline void displace(pw_interface_node *a, const pw_real *v, pw_real dt)
   a->x[1] += a->du[1];
 }
 
+static bool weightless(const pw_interface_node *a)
+{
+  return a->weight[0] + a->weight[1] + a->weight[2] + a->weight[3] <= 0.0;
+}
+
+/* The node with weights that is fewest nodes away along the line, the one before at equal count. */
+static pw_idx nearest_carried(const pw_interface *line, pw_idx k)
+{
+  for (pw_idx far = 1; far < line->n; far++) {
+    for (int way = -1; way <= 1; way += 2) {
+      pw_idx m = k + way * far;
+      m = line->closed ? (m + line->n) % line->n : m;
+      if (m >= 0 && m < line->n && !weightless(&line->node[m])) {
+        return m;
+      }
+    }
+  }
+  return -1;
+}
+
 void pw_interface_move(pw_interface *line, const pw_real *rec, int slot, pw_real dt)
 {
   for (pw_idx k = 0; k < line->n; k++) {
-    pw_real v[2];
-    gather(line, rec + slot, line->node[k].weight, &line->node[k], v);
+    pw_idx from = weightless(&line->node[k]) ? nearest_carried(line, k) : k;
+    pw_real v[2] = {0.0, 0.0};
+    if (from >= 0) {
+      gather(line, rec + slot, line->node[from].weight, &line->node[from], v);
+    }
     displace(&line->node[k], v, dt);
   }
 }

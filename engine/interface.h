@@ -139,7 +139,9 @@ void pw_interface_velocity(pw_interface *line, const pw_real *rec);
 /** @brief Add momentum to slot REMAP. */
 void pw_interface_remap(const pw_interface *line, pw_real *rec);
 
-/** @brief x += dt sum w v, with the velocities in slot @p slot; du is renewed, areas are not. */
+/** @brief x += dt sum w v, with the velocities in slot @p slot; du is renewed, areas are not. Nodes
+ *  without weights (a line without mass, off the grid nodes of its body) go with the nearest node
+ *  of the line that has some, or the master would pass those that stay behind. */
 void pw_interface_move(pw_interface *line, const pw_real *rec, int slot, pw_real dt);
 
 /** @brief Give every node the velocity @p v [2]. */

@@ -147,6 +147,44 @@ static void line_moves_with_a_linear_field(void **state)
   }
 }
 
+/* Body mass at low nodes only: nodes of the line in cells without any go with the nearest node of the
+ * line that the body carries. */
+static void nodes_off_the_body_go_along(void **state)
+{
+  (void)state;
+  fixture f;
+  set_up(&f, false);
+  for (pw_idx k = 0; k < f.mesh.nnode; k++) {
+    pw_real *r = f.nodes.rec + (pw_off)k * PW_NODE;
+    r[PW_NODE_MASS] = pw_mesh_node_y(&f.mesh, k) <= 0.5 ? 1.0 : 0.0;
+    r[PW_NODE_REMAP] = 0.3 + pw_mesh_node_x(&f.mesh, k);
+    r[PW_NODE_REMAP + 1] = -1.0;
+  }
+  pw_interface_weights(&f.line, f.nodes.rec, 1e-8);
+  pw_interface_move(&f.line, f.nodes.rec, PW_NODE_REMAP, 0.01);
+  int along = 0;
+  for (pw_idx k = 0; k < N; k++) {
+    const pw_interface_node *a = &f.line.node[k];
+    assert_near(a->du[1], -0.01, 1e-15); /* nobody stays behind */
+    if (a->weight[0] + a->weight[1] + a->weight[2] + a->weight[3] > 0.0) {
+      continue;
+    }
+    const pw_interface_node *other = NULL;
+    for (pw_idx far = 1; far < N && !other; far++) {
+      for (int way = -1; way <= 1 && !other; way += 2) {
+        const pw_idx m = k + way * far;
+        const pw_real *w = m >= 0 && m < N ? f.line.node[m].weight : NULL;
+        other = w && w[0] + w[1] + w[2] + w[3] > 0.0 ? &f.line.node[m] : NULL;
+      }
+    }
+    assert_non_null(other);
+    assert_near(a->du[0], other->du[0], 0.0);
+    along++;
+  }
+  assert_true(along > 0 && along < N);
+  tear_down(&f);
+}
+
 /* Split and merge keep mass, momentum and length of the line; capacity ends the splits. */
 static void refining_conserves(void **state)
 {
@@ -223,6 +261,7 @@ int main(void)
       cmocka_unit_test(momentum_reaches_the_grid),
       cmocka_unit_test(empty_nodes_take_no_part),
       cmocka_unit_test(line_moves_with_a_linear_field),
+      cmocka_unit_test(nodes_off_the_body_go_along),
       cmocka_unit_test(refining_conserves),
       cmocka_unit_test(no_memory_is_reported),
   };
