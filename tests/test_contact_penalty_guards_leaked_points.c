@@ -17,14 +17,22 @@ static void guard(pw_scene *s)
   p->guard_depth_m = ALLOWED;
 }
 
-/* A block at rest without gravity under a punch that touches it and is held. */
+/* A block without gravity, 1 m high. @return a stiff material for what touches it. */
+static int block(pw_scene *s, int geometry)
+{
+  pw_scene_default(s);
+  s->geometry = geometry;
+  test_grid(s, (pw_real[]){0.0, 2.0, 0.0, 2.5}, CELL);
+  int soft = test_neo_hookean(s, 1e5, 5e4, DENSITY);
+  test_rectangle(s, soft, (pw_real[]){0.0, 2.0, 0.0, 1.0}, SIZE);
+  return test_elastic(s, 1e7, 0.2, 2500.0);
+}
+
+/* The block under a punch that touches it and is held. */
 static pw_sim *resting(bool guarded)
 {
   static pw_scene s; /* large */
-  pw_scene_default(&s);
-  test_grid(&s, (pw_real[]){0.0, 2.0, 0.0, 2.5}, CELL);
-  int soft = test_neo_hookean(&s, 1e5, 5e4, DENSITY), stiff = test_elastic(&s, 1e7, 0.2, 2500.0);
-  test_rectangle(&s, soft, (pw_real[]){0.0, 2.0, 0.0, 1.0}, 0.125);
+  const int stiff = block(&s, PW_PLANE);
   test_rectangle(&s, stiff, (pw_real[]){0.5, 1.0, 1.0, 1.75}, 0.125);
   test_hold(&s, 1);
   test_add_contact(&s, TEST_PENALTY, 1, 0, 0.4, STIFFNESS, SIZE);
@@ -86,11 +94,7 @@ static void a_free_master_takes_the_reaction(void **state)
 {
   (void)state;
   static pw_scene s; /* large */
-  pw_scene_default(&s);
-  s.geometry = PW_AXI;
-  test_grid(&s, (pw_real[]){0.0, 2.0, 0.0, 2.5}, CELL);
-  int soft = test_neo_hookean(&s, 1e5, 5e4, DENSITY), stiff = test_elastic(&s, 1e7, 0.2, 2500.0);
-  test_rectangle(&s, soft, (pw_real[]){0.0, 2.0, 0.0, 1.0}, SIZE);
+  const int stiff = block(&s, PW_AXI);
   test_rectangle(&s, stiff, (pw_real[]){0.0, 0.5, 1.0, 1.75}, SIZE);
   test_add_contact(&s, TEST_PENALTY, 1, 0, 0.4, STIFFNESS, SIZE);
   guard(&s);
@@ -124,11 +128,7 @@ static void beside_the_tip_is_outside(void **state)
 {
   (void)state;
   static pw_scene s; /* large */
-  pw_scene_default(&s);
-  s.geometry = PW_AXI;
-  test_grid(&s, (pw_real[]){0.0, 2.0, 0.0, 2.5}, CELL);
-  int soft = test_neo_hookean(&s, 1e5, 5e4, DENSITY), stiff = test_elastic(&s, 1e7, 0.2, 2500.0);
-  test_rectangle(&s, soft, (pw_real[]){0.0, 2.0, 0.0, 1.0}, SIZE);
+  const int stiff = block(&s, PW_AXI);
   s.body[s.nbody++] = (pw_scene_body){.name = "pile",
                                       .material = stiff,
                                       .shape = PW_SHAPE_PILE,
