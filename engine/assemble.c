@@ -72,6 +72,12 @@ void pw_for_blocks(const pw_blocks *b, int threads, pw_block_fn fn, void *ctx)
   pw_assemble_pass(b, threads, &(pw_pass){.block = fn, .any_order = true}, ctx);
 }
 
+void pw_for_parts(int threads, pw_part_fn fn, void *ctx)
+{
+#pragma omp parallel default(none) shared(fn, ctx) num_threads(threads)
+  fn(ctx, omp_get_thread_num(), omp_get_num_threads());
+}
+
 void pw_for_listed(const pw_idx *list, pw_idx n, int threads, pw_block_fn fn, void *ctx)
 {
 #pragma omp parallel for default(none) shared(list, n, fn, ctx) num_threads(threads)               \

@@ -39,6 +39,9 @@ void pw_assemble_pass(const pw_blocks *b, int threads, const pw_pass *pass, void
 /** @brief Call @p fn for the same blocks in any order: for loops that write to points only. */
 void pw_for_blocks(const pw_blocks *b, int threads, pw_block_fn fn, void *ctx);
 
+/** @brief Call @p fn once on each thread with its part. */
+void pw_for_parts(int threads, pw_part_fn fn, void *ctx);
+
 /** @brief Call @p fn for the blocks of a list [n], each by whoever is free: for few of them, whose work
  *  is not that by which the blocks are divided, and that write to points or to the block's own. */
 void pw_for_listed(const pw_idx *list, pw_idx n, int threads, pw_block_fn fn, void *ctx);

@@ -23,11 +23,14 @@ typedef enum pw_stage {
   PW_STAGE_BEGIN,      /**< weights are known, nodes still empty */
   PW_STAGE_P2G,        /**< after the points' scatter: further scatters (own passes) */
   PW_STAGE_NODE_FORCE, /**< add to the nodes' force; momentum and mass are in the records */
+  PW_STAGE_WEIGHT,     /**< the same, each record by itself: a part of them (pw_part_hook_fn) */
+  PW_STAGE_NODE_TOTAL, /**< the same, by what all others together have added */
   PW_STAGE_CONSTRAINT, /**< change velocities at t(n+1); FORCE slots hold v(n) */
-  PW_STAGE_REMAP_P2G,  /**< MUSL: points' remapped momentum is in slot REMAP; add further ones */
-  PW_STAGE_REMAP,      /**< MUSL: the same constraints on the remapped velocities */
-  PW_STAGE_MESH,       /**< points and interfaces have moved */
-  PW_STAGE_END,        /**< probes, records; sim->time is t(n+1) */
+  PW_STAGE_REMAP_P2G, /**< MUSL: slot REMAP is still empty: put in momenta other than the points' */
+  PW_STAGE_REMAP,     /**< MUSL: the same constraints on the remapped velocities */
+  PW_STAGE_MOTION,    /**< velocities of the step are final: sums over a part of the records */
+  PW_STAGE_MESH,      /**< points and interfaces have moved */
+  PW_STAGE_END,       /**< probes, records; sim->time is t(n+1) */
   PW_STAGE_COUNT
 } pw_stage;
 
@@ -36,6 +39,15 @@ typedef struct pw_hook {
   pw_stage stage;
   pw_hook_fn fn;
 } pw_hook; /**< a list ends with {0, NULL} */
+
+/** Work of one thread on part @p part of @p parts of the nodal records (pw_nodes_part), in stages
+ *  WEIGHT and MOTION of explicit steps: it runs within the loops that come next, as a pass over the
+ *  records on its own costs what their way between processors costs. */
+typedef void (*pw_part_hook_fn)(const pw_sim *sim, void *ctx, int part, int parts);
+typedef struct pw_part_hook {
+  pw_stage stage;
+  pw_part_hook_fn fn;
+} pw_part_hook; /**< a list ends with {0, NULL} */
 
 /** A list of mappings inside an effect's section; each entry fills one row of an array in the
  *  parameter struct. */
@@ -58,6 +70,7 @@ struct pw_effect {
   const pw_key *keys;         /**< offsets into its parameter struct */
   const pw_effect_rows *rows; /**< a list in its section, or NULL */
   const pw_hook *hooks;
+  const pw_part_hook *part_hooks; /**< stages WEIGHT and MOTION; NULL: none */
   /** Hooks of implicit steps on the grid (engine/step_implicit.h), NULL: they do not know this
    *  effect. PW_STAGE_CONSTRAINT there holds nodes, PW_STAGE_NODE_FORCE adds what acts at
    *  sim->time + sim->dt; both run for every part of a step, and more than once. */

@@ -211,13 +211,17 @@ static inline void gather(const pw_interface *line, const pw_real *rec, const pw
   }
 }
 
-void pw_interface_velocity(pw_interface *line, const pw_real *rec)
+void pw_interface_velocity(pw_interface *line, const pw_real *rec, bool increments)
 {
   for (pw_idx k = 0; k < line->n; k++) {
-    pw_real dv[2];
-    gather(line, rec + PW_NODE_FORCE, line->node[k].shape, &line->node[k], dv);
-    line->node[k].v[0] += dv[0];
-    line->node[k].v[1] += dv[1];
+    pw_interface_node *a = &line->node[k];
+    pw_real dv[2], before[2] = {0.0, 0.0};
+    gather(line, rec + (increments ? PW_NODE_FORCE : PW_NODE_VEL), a->shape, a, dv);
+    if (!increments) {
+      gather(line, rec + PW_NODE_FORCE, a->shape, a, before);
+    }
+    a->v[0] += dv[0] - before[0];
+    a->v[1] += dv[1] - before[1];
   }
 }
 

@@ -132,9 +132,9 @@ void pw_interface_p2g(const pw_interface *line, pw_real *rec);
  */
 void pw_interface_weights(pw_interface *line, const pw_real *rec, pw_real cut_off);
 
-/** @brief v += sum N dv, with the increments of velocity in slot FORCE: the reverse of the scatter
- *  of momentum, so that the sum over points and line is conserved. */
-void pw_interface_velocity(pw_interface *line, const pw_real *rec);
+/** @brief v += sum N dv: the reverse of the scatter of momentum, so that the sum over points and
+ *  line is conserved. @param[in] increments slot FORCE holds dv; else v(n), and slot VEL v(n+1) */
+void pw_interface_velocity(pw_interface *line, const pw_real *rec, bool increments);
 
 /** @brief Add momentum to slot REMAP. */
 void pw_interface_remap(const pw_interface *line, pw_real *rec);

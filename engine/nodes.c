@@ -65,8 +65,7 @@ void pw_nodes_use(pw_nodes *nodes, int f, pw_idx first, pw_idx n)
   }
 }
 
-/* Groups in use [*first, *last) of one part. */
-static void part_of(const pw_nodes *nodes, int part, int parts, pw_idx *first, pw_idx *last)
+void pw_nodes_part(const pw_nodes *nodes, int part, int parts, pw_idx *first, pw_idx *last)
 {
   *first = (pw_idx)((pw_off)nodes->nused * part / parts);
   *last = (pw_idx)((pw_off)nodes->nused * (part + 1) / parts);
@@ -75,7 +74,7 @@ static void part_of(const pw_nodes *nodes, int part, int parts, pw_idx *first, p
 void pw_nodes_clear_part(pw_nodes *nodes, int part, int parts)
 {
   pw_idx i, end;
-  for (part_of(nodes, part, parts, &i, &end); i < end; i++) {
+  for (pw_nodes_part(nodes, part, parts, &i, &end); i < end; i++) {
     pw_off k, last;
     pw_nodes_group(nodes, i, &k, &last);
     memset(nodes->rec + k * PW_NODE, 0, (size_t)(last - k) * PW_NODE * sizeof(pw_real));
@@ -87,11 +86,10 @@ void pw_nodes_clear(pw_nodes *nodes)
   pw_nodes_clear_part(nodes, 0, 1);
 }
 
-void pw_nodes_momentum(pw_nodes *nodes, pw_real dt, pw_real cut_off)
+void pw_nodes_momentum_part(pw_nodes *nodes, pw_real dt, pw_real cut_off, int part, int parts)
 {
-  const pw_idx groups = nodes->nused;
-#pragma omp parallel for default(none) shared(nodes, groups, dt, cut_off) schedule(static)
-  for (pw_idx i = 0; i < groups; i++) {
+  pw_idx i, end;
+  for (pw_nodes_part(nodes, part, parts, &i, &end); i < end; i++) {
     pw_off k, last;
     for (pw_nodes_group(nodes, i, &k, &last); k < last; k++) {
       pw_real *r = nodes->rec + k * PW_NODE;
@@ -110,7 +108,7 @@ void pw_nodes_momentum(pw_nodes *nodes, pw_real dt, pw_real cut_off)
 void pw_nodes_increment_part(pw_nodes *nodes, int part, int parts)
 {
   pw_idx i, end;
-  for (part_of(nodes, part, parts, &i, &end); i < end; i++) {
+  for (pw_nodes_part(nodes, part, parts, &i, &end); i < end; i++) {
     pw_off k, last;
     for (pw_nodes_group(nodes, i, &k, &last); k < last; k++) {
       pw_real *r = nodes->rec + k * PW_NODE;
@@ -123,7 +121,7 @@ void pw_nodes_increment_part(pw_nodes *nodes, int part, int parts)
 void pw_nodes_remap_part(pw_nodes *nodes, int part, int parts)
 {
   pw_idx i, end;
-  for (part_of(nodes, part, parts, &i, &end); i < end; i++) {
+  for (pw_nodes_part(nodes, part, parts, &i, &end); i < end; i++) {
     pw_off k, last;
     for (pw_nodes_group(nodes, i, &k, &last); k < last; k++) {
       pw_real *r = nodes->rec + k * PW_NODE;

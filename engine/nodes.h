@@ -85,6 +85,9 @@ static inline void pw_nodes_group(const pw_nodes *nodes, pw_idx i, pw_off *first
   *last = *first + PW_NODE_GROUP < nodes->count ? *first + PW_NODE_GROUP : nodes->count;
 }
 
+/** @brief Groups in use [*first, *last) of one of @p parts. */
+void pw_nodes_part(const pw_nodes *nodes, int part, int parts, pw_idx *first, pw_idx *last);
+
 /** @brief Set every record in use to zero. */
 void pw_nodes_clear(pw_nodes *nodes);
 
@@ -95,7 +98,7 @@ void pw_nodes_clear_part(pw_nodes *nodes, int part, int parts);
  * @brief Momentum to velocity, forces to the step's velocity: v(n) = p/m, v(n+1) = v(n) + dt f/m.
  * @param[in] cut_off nodes with less mass take no part: velocity zero, not active; kg
  */
-void pw_nodes_momentum(pw_nodes *nodes, pw_real dt, pw_real cut_off);
+void pw_nodes_momentum_part(pw_nodes *nodes, pw_real dt, pw_real cut_off, int part, int parts);
 
 /** @brief After the constraints: slot FORCE becomes v(n+1) - v(n), what the points receive.
  *  One of @p parts of the records in use. */

@@ -33,28 +33,27 @@ static void clear_empty(pw_sim *sim)
   }
 }
 
-/* The support of a block in field f. */
-static void use_support(const pw_blocks *b, pw_idx block, int f, pw_nodes *nodes)
+/* Nodes of field f within reach of an element. */
+static void use_support(const pw_blocks *b, pw_idx elem, int f, pw_nodes *nodes)
 {
-  const pw_idx row = b->cells[0] + 1;
-  for (pw_idx m = b->elem_start[block]; m < b->elem_start[block + 1]; m++) {
-    const pw_idx i = b->elem[m] % b->cells[0], j = b->elem[m] / b->cells[0];
-    const pw_idx left = i > b->reach ? i - b->reach : 0;
-    const pw_idx right = i + 1 + b->reach < b->cells[0] ? i + 1 + b->reach : b->cells[0];
-    for (pw_idx y = j > b->reach ? j - b->reach : 0; y <= j + 1 + b->reach && y <= b->cells[1];
-         y++) {
-      pw_nodes_use(nodes, f, y * row + left, right - left + 1);
-    }
+  const pw_idx row = b->cells[0] + 1, i = elem % b->cells[0], j = elem / b->cells[0];
+  const pw_idx left = i > b->reach ? i - b->reach : 0;
+  const pw_idx right = i + 1 + b->reach < b->cells[0] ? i + 1 + b->reach : b->cells[0];
+  for (pw_idx y = j > b->reach ? j - b->reach : 0; y <= j + 1 + b->reach && y <= b->cells[1]; y++) {
+    pw_nodes_use(nodes, f, y * row + left, right - left + 1);
   }
 }
 
 void pw_ranges_use(const pw_sim *sim, pw_idx block, pw_nodes *nodes)
 {
   const pw_blocks *b = &sim->blocks;
+  const pw_idx *home = sim->points.home;
   for (int body = 0; body < b->nbody; body++) {
     const pw_idx *start = b->point_start + (pw_off)block * b->nbody + body;
-    if (start[1] > start[0]) {
-      use_support(b, block, sim->body[body].field, nodes);
+    for (pw_idx k = start[0]; k < start[1]; k++) {
+      if (k == start[0] || home[k] != home[k - 1]) { /* neighbours mostly share an element */
+        use_support(b, home[k], sim->body[body].field, nodes);
+      }
     }
   }
 }

@@ -139,13 +139,6 @@ void pw_rates_begin(pw_sim *sim, int k, int n)
   }
 }
 
-/* Groups in use [*first, *last) of one part of the nodes. */
-static void part_of(const pw_nodes *nodes, int part, int parts, pw_idx *first, pw_idx *last)
-{
-  *first = (pw_idx)((pw_off)nodes->nused * part / parts);
-  *last = (pw_idx)((pw_off)nodes->nused * (part + 1) / parts);
-}
-
 void pw_rates_clear_part(pw_sim *sim, int part, int parts)
 {
   for (int l = 1; l <= sim->rates->begun; l++) {
@@ -157,7 +150,7 @@ void pw_rates_add_part(pw_sim *sim, int part, int parts)
 {
   const pw_rates *r = sim->rates;
   pw_idx i, end;
-  for (part_of(&sim->nodes, part, parts, &i, &end); i < end; i++) {
+  for (pw_nodes_part(&sim->nodes, part, parts, &i, &end); i < end; i++) {
     pw_off first, last;
     pw_nodes_group(&sim->nodes, i, &first, &last);
     for (int l = 1; l <= r->levels; l++) {
@@ -195,7 +188,7 @@ void pw_rates_increment_part(pw_sim *sim, int part, int parts)
 {
   const pw_rates *r = sim->rates;
   pw_idx i, end;
-  for (part_of(&sim->nodes, part, parts, &i, &end); i < end; i++) {
+  for (pw_nodes_part(&sim->nodes, part, parts, &i, &end); i < end; i++) {
     pw_off first, last;
     pw_nodes_group(&sim->nodes, i, &first, &last);
     for (int l = 1; l <= r->levels; l++) {
@@ -213,7 +206,7 @@ static void end_part(void *ctx, int part, int parts)
   const pw_rates *r = sim->rates;
   for (int l = r->done_below + 1; l <= r->levels; l++) {
     pw_idx i, end;
-    for (part_of(&r->held[l], part, parts, &i, &end); i < end; i++) {
+    for (pw_nodes_part(&r->held[l], part, parts, &i, &end); i < end; i++) {
       pw_off k, last;
       for (pw_nodes_group(&r->held[l], i, &k, &last); k < last; k++) {
         pw_real *held = r->held[l].rec + k * PW_NODE;

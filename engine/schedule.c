@@ -9,7 +9,14 @@ static void append_effect(pw_sim *sim, int e, pw_stage stage)
   const bool implicit = sim->scene.method.update == PW_IMPLICIT;
   for (const pw_hook *h = implicit ? type->implicit : type->hooks; h && h->fn; h++) {
     if (h->stage == stage) {
-      sim->schedule.hook[sim->schedule.n++] = (pw_scheduled){stage, h->fn, sim->ctx[e], type->name};
+      sim->schedule.hook[sim->schedule.n++] =
+          (pw_scheduled){.stage = stage, .fn = h->fn, .ctx = sim->ctx[e], .effect = type->name};
+    }
+  }
+  for (const pw_part_hook *h = implicit ? NULL : type->part_hooks; h && h->fn; h++) {
+    if (h->stage == stage) {
+      sim->schedule.hook[sim->schedule.n++] =
+          (pw_scheduled){.stage = stage, .ctx = sim->ctx[e], .effect = type->name, .part = h->fn};
     }
   }
 }
@@ -39,10 +46,19 @@ pw_status pw_schedule_run(pw_sim *sim, pw_stage stage)
   return PW_OK;
 }
 
+void pw_schedule_run_part(const pw_sim *sim, pw_stage stage, int part, int parts)
+{
+  const pw_schedule *s = &sim->schedule;
+  for (int k = s->start[stage]; k < s->start[stage + 1]; k++) {
+    s->hook[k].part(sim, s->hook[k].ctx, part, parts);
+  }
+}
+
 void pw_sim_schedule_text(const pw_sim *sim, char *text, size_t size)
 {
   static const char *const names[PW_STAGE_COUNT] = {
-      "start", "begin", "p2g", "node_force", "constraint", "remap_p2g", "remap", "mesh", "end"};
+      "start",      "begin",     "p2g",   "node_force", "weight", "node_total",
+      "constraint", "remap_p2g", "remap", "motion",     "mesh",   "end"};
   size_t used = 0;
   if (size > 0) {
     text[0] = '\0';

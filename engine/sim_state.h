@@ -19,6 +19,7 @@ typedef struct pw_scheduled {
   pw_hook_fn fn;
   void *ctx;
   const char *effect;
+  pw_part_hook_fn part; /**< in place of fn */
 } pw_scheduled;
 
 typedef struct pw_schedule {
@@ -112,6 +113,9 @@ struct pw_sim {
 
 /** @brief Run the hooks of @p stage in order. @return the first status that is not PW_OK. */
 pw_status pw_schedule_run(pw_sim *sim, pw_stage stage);
+
+/** @brief Run one thread's part of those of stages WEIGHT and MOTION. */
+void pw_schedule_run_part(const pw_sim *sim, pw_stage stage, int part, int parts);
 
 /** @brief Hooks of @p stage. */
 static inline int pw_schedule_count(const pw_sim *sim, pw_stage stage)

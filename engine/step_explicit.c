@@ -89,11 +89,27 @@ static void remap_nodes(void *ctx, int part, int parts)
   pw_nodes_remap_part(&((pw_sim *)ctx)->nodes, part, parts);
 }
 
-/* After further scatters, which no pass over blocks can wait for. */
-static void remap_apart(pw_sim *sim)
+static void weigh_nodes(void *ctx, int part, int parts)
 {
-#pragma omp parallel default(none) shared(sim) num_threads(sim->threads)
-  remap_nodes(sim, omp_get_thread_num(), omp_get_num_threads());
+  pw_schedule_run_part(ctx, PW_STAGE_WEIGHT, part, parts);
+}
+
+static void new_velocities(void *ctx, int part, int parts)
+{
+  pw_sim *sim = ctx;
+  pw_nodes_momentum_part(&sim->nodes, sim->dt, sim->mass_cut_off, part, parts);
+}
+
+static void weigh_and_move(void *ctx, int part, int parts)
+{
+  weigh_nodes(ctx, part, parts);
+  new_velocities(ctx, part, parts);
+}
+
+static void start_velocities(void *ctx, int part, int parts)
+{
+  pw_sim *sim = ctx;
+  pw_nodes_momentum_part(&sim->nodes, 0.0, sim->mass_cut_off, part, parts);
 }
 
 /* Scatter onto cleared nodes. */
@@ -102,6 +118,22 @@ static void scatter(pw_sim *sim, pw_block_fn block)
   const pw_pass pass = {clear_nodes, block, sim->rates ? add_held : NULL, false};
   force_stress(sim);
   pw_assemble_pass(pw_rates_starting(sim), sim->threads, &pass, sim);
+}
+
+/* Forces to new velocities of the nodes; when nothing else needs the sum of the forces, in one go. */
+static pw_status move_nodes(pw_sim *sim)
+{
+  if (pw_schedule_count(sim, PW_STAGE_NODE_TOTAL) == 0 && !pw_pairs_on(sim)) {
+    pw_for_parts(sim->threads, weigh_and_move, sim);
+    return PW_OK;
+  }
+  pw_for_parts(sim->threads, weigh_nodes, sim);
+  PW_TRY(pw_schedule_run(sim, PW_STAGE_NODE_TOTAL));
+  if (pw_pairs_on(sim)) { /* mass, momentum, force */
+    pw_pairs_collect(sim, PW_NODE_MASS, PW_NODE_REMAP);
+  }
+  pw_for_parts(sim->threads, new_velocities, sim);
+  return PW_OK;
 }
 
 /* Points to grid, forces, new nodal velocities under all constraints. */
@@ -113,10 +145,7 @@ static pw_status grid_velocity(pw_sim *sim, double *clock)
   PW_TRY(pw_schedule_run(sim, PW_STAGE_NODE_FORCE));
   pw_structures_kick(sim);
   lap(sim, PW_TIMER_EFFECTS, clock);
-  if (pw_pairs_on(sim)) { /* mass, momentum, force */
-    pw_pairs_collect(sim, PW_NODE_MASS, PW_NODE_REMAP);
-  }
-  pw_nodes_momentum(&sim->nodes, sim->dt, sim->mass_cut_off);
+  PW_TRY(move_nodes(sim));
   lap(sim, PW_TIMER_NODES, clock);
   PW_TRY(constrain(sim, PW_STAGE_CONSTRAINT, PW_NODE_VEL));
   lap(sim, PW_TIMER_EFFECTS, clock);
@@ -127,6 +156,13 @@ static pw_status grid_velocity(pw_sim *sim, double *clock)
   return PW_OK;
 }
 
+/* The velocities are final: sums over nodes, just before the points read the same records. */
+static void sum_nodes(void *ctx, int part, int parts)
+{
+  const pw_update_pass *pass = ctx;
+  pw_schedule_run_part(pass->sim, PW_STAGE_MOTION, part, parts);
+}
+
 /* Gather gradients; move, deform and stress the points. */
 static void update_points(pw_sim *sim, pw_update_pass *pass)
 {
@@ -134,7 +170,9 @@ static void update_points(pw_sim *sim, pw_update_pass *pass)
     pw_fbar_clear(sim);
     pw_assemble_coloured(pw_rates_ending(sim), sim->threads, pw_block_fbar_gather, pass);
   }
-  pw_for_blocks(pw_rates_ending(sim), sim->threads, pw_block_update, pass);
+  const bool sums = pass->move && pw_schedule_count(sim, PW_STAGE_MOTION) > 0;
+  const pw_pass update = {sums ? sum_nodes : NULL, pw_block_update, NULL, true};
+  pw_assemble_pass(pw_rates_ending(sim), sim->threads, &update, pass);
 }
 
 /* USF: stress from the velocities at the start of the step. */
@@ -142,7 +180,7 @@ static pw_status stress_first(pw_sim *sim, double *clock)
 {
   scatter(sim, pw_block_p2g_momentum);
   PW_TRY(pw_schedule_run(sim, PW_STAGE_P2G));
-  pw_nodes_momentum(&sim->nodes, 0.0, sim->mass_cut_off);
+  pw_for_parts(sim->threads, start_velocities, sim);
   PW_TRY(constrain(sim, PW_STAGE_REMAP, PW_NODE_VEL));
   lap(sim, PW_TIMER_P2G, clock);
   pw_update_pass pass = {sim, PW_NODE_VEL, false, true};
@@ -155,18 +193,16 @@ static pw_status stress_first(pw_sim *sim, double *clock)
 /* MUSL: the points take their increments of velocity, and their momentum goes back on the grid. */
 static pw_status remap_velocity(pw_sim *sim, double *clock)
 {
-  const bool alone = pw_schedule_count(sim, PW_STAGE_REMAP_P2G) == 0 && !pw_pairs_on(sim);
-  const pw_pass pass = {increment_nodes, pw_block_velocity_remap, alone ? remap_nodes : NULL,
+  const bool pairs = pw_pairs_on(sim);
+  const pw_pass pass = {increment_nodes, pw_block_velocity_remap, pairs ? NULL : remap_nodes,
                         false};
+  PW_TRY(pw_schedule_run(sim, PW_STAGE_REMAP_P2G));
+  lap(sim, PW_TIMER_EFFECTS, clock);
   pw_assemble_pass(pw_rates_ending(sim), sim->threads, &pass, sim);
   lap(sim, PW_TIMER_REMAP, clock);
-  if (!alone) {
-    PW_TRY(pw_schedule_run(sim, PW_STAGE_REMAP_P2G));
-    lap(sim, PW_TIMER_EFFECTS, clock);
-    if (pw_pairs_on(sim)) {
-      pw_pairs_collect(sim, PW_NODE_REMAP, 2);
-    }
-    remap_apart(sim);
+  if (pairs) {
+    pw_pairs_collect(sim, PW_NODE_REMAP, 2);
+    pw_for_parts(sim->threads, remap_nodes, sim);
     lap(sim, PW_TIMER_NODES, clock);
   }
   PW_TRY(constrain(sim, PW_STAGE_REMAP, PW_NODE_REMAP));

@@ -133,7 +133,7 @@ static void line_moves_with_a_linear_field(void **state)
     pw_interface_node before[N];
     memcpy(before, f.line.node, sizeof before);
     pw_interface_weights(&f.line, f.nodes.rec, 1e-8);
-    pw_interface_velocity(&f.line, f.nodes.rec);
+    pw_interface_velocity(&f.line, f.nodes.rec, true);
     pw_interface_move(&f.line, f.nodes.rec, PW_NODE_REMAP, 0.01);
     for (pw_idx k = 0; k < N; k++) {
       const pw_real *x = before[k].x;

@@ -46,10 +46,10 @@ static void elastic_column(void **state)
   test_roller(&s, PW_SIDE_BOTTOM);
   test_gravity(&s, 1.0);
   pw_sim *sim = test_sim(&s, 1);
-  assert_hooks(sim, "node_force: gravity\n"
+  assert_hooks(sim, "node_force: gravity\nweight: gravity\n"
                     "constraint: boundary\n"
                     "remap: boundary\n"
-                    "end: gravity\n");
+                    "motion: gravity\nend: gravity\n");
   assert_fields(sim, "id body home x v mass vol def_grad stress corner local");
   assert_int_equal(sim->nodes.nfield, 1);
   assert_null(sim->limit);
@@ -99,10 +99,11 @@ static void hammered_pile(void **state)
   pw_sim *sim = test_sim(&s, 1);
   assert_hooks(sim, "p2g: initial_stress\np2g: contact_penalty\n"
                     "node_force: gravity\nnode_force: hammer\nnode_force: contact_penalty\n"
+                    "weight: gravity\n"
                     "constraint: boundary\nconstraint: boundary\n"
                     "remap_p2g: contact_penalty\n"
                     "remap: boundary\nremap: boundary\n"
-                    "mesh: contact_penalty\n"
+                    "motion: gravity\nmesh: contact_penalty\n"
                     "end: initial_stress\nend: gravity\nend: hammer\nend: pile_record\n");
   assert_fields(sim, "id body home x v mass vol def_grad stress state half0 half corner local");
   assert_int_equal(sim->points.nstate, 8); /* void ratio, intergranular strain, substep */

@@ -81,7 +81,8 @@ static void add_load(pw_sim *sim, inner_pressure *c)
   pw_schedule *s = &sim->schedule;
   int at = s->start[PW_STAGE_NODE_FORCE];
   memmove(s->hook + at + 1, s->hook + at, (size_t)(s->n - at) * sizeof *s->hook);
-  s->hook[at] = (pw_scheduled){PW_STAGE_NODE_FORCE, load_apply, c, "inner pressure"};
+  s->hook[at] = (pw_scheduled){
+      .stage = PW_STAGE_NODE_FORCE, .fn = load_apply, .ctx = c, .effect = "inner pressure"};
   s->n++;
   for (int k = PW_STAGE_NODE_FORCE + 1; k <= PW_STAGE_COUNT; k++) {
     s->start[k]++;

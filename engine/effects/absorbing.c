@@ -474,7 +474,7 @@ static pw_status create(pw_sim *sim, const void *param, void **ctx)
 }
 
 static const pw_hook hooks[] = {
-    {PW_STAGE_NODE_FORCE, add_held},
+    {PW_STAGE_NODE_TOTAL, add_held},
     {PW_STAGE_CONSTRAINT, absorb},
     {PW_STAGE_REMAP, hold_remapped},
     {PW_STAGE_END, close_step},

@@ -125,6 +125,9 @@ static pw_status hold(pw_sim *sim, void *ctx)
     pw_real *rec = pw_nodes_field(&sim->nodes, f);
     for (pw_idx k = 0; k < c->n; k++) {
       pw_real *r = rec + (pw_off)c->node[k] * PW_NODE;
+      if (!pw_nodes_in_use(&sim->nodes, f, c->node[k])) {
+        continue;
+      }
       for (int a = 0; a < 2; a++) {
         if (c->fix[a]) {
           gained[a] += r[PW_NODE_MASS] * (r[PW_NODE_VEL + a] - r[PW_NODE_FORCE + a]);
@@ -147,9 +150,10 @@ static pw_status hold_remapped(pw_sim *sim, void *ctx)
   pw_effect_fields(sim, c->param->body, &first, &last);
   for (int f = first; f < last; f++) {
     pw_real *rec = pw_nodes_field(&sim->nodes, f) + sim->node_slot;
-    for (int a = 0; a < 2; a++) {
-      for (pw_idx k = 0; c->fix[a] && k < c->n; k++) {
-        rec[(pw_off)c->node[k] * PW_NODE + a] = c->velocity[a];
+    for (pw_idx k = 0; k < c->n; k++) {
+      pw_real *v = rec + (pw_off)c->node[k] * PW_NODE;
+      for (int a = 0; a < 2 && pw_nodes_in_use(&sim->nodes, f, c->node[k]); a++) {
+        v[a] = c->fix[a] ? c->velocity[a] : v[a];
       }
     }
   }

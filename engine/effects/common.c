@@ -1,6 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "engine/effects/common.h"
 
+#include <omp.h>
+
 #include "engine/effects/load_curve.h"
 
 enum { CHUNK = 512 };
@@ -52,16 +54,19 @@ static void sum_runs(pw_sum_fn fn, const void *ctx, const pw_nodes *nodes, const
   }
 }
 
-void pw_sum_nodes(pw_sum_fn fn, const void *ctx, const pw_sim *sim, const int field[2],
-                  pw_real *part, pw_real *out)
+static pw_off chunks_of(const pw_sim *sim, const int field[2])
+{
+  return ((pw_off)(field[1] - field[0]) * sim->nodes.nnode + CHUNK - 1) / CHUNK;
+}
+
+/* Chunks in turns: those in use are seldom spread evenly. */
+void pw_sum_nodes_part(pw_sum_fn fn, const void *ctx, const pw_sim *sim, const int field[2],
+                       pw_real *part, int thread, int threads)
 {
   const pw_nodes *nodes = &sim->nodes;
   const pw_off first = (pw_off)field[0] * nodes->nnode, last = (pw_off)field[1] * nodes->nnode;
-  const pw_off chunks = (last - first + CHUNK - 1) / CHUNK;
-  /* Chunks in turns: those in use are seldom spread evenly. */
-#pragma omp parallel for default(none) shared(fn, ctx, nodes, first, last, part, chunks)           \
-    num_threads(sim->threads) schedule(static, 1)
-  for (pw_off k = 0; k < chunks; k++) {
+  const pw_off chunks = chunks_of(sim, field);
+  for (pw_off k = thread; k < chunks; k += threads) {
     const pw_off from = first + k * CHUNK, to = from + CHUNK < last ? from + CHUNK : last;
     pw_real sum[PW_SUMS] = {0.0};
     sum_runs(fn, ctx, nodes, (const pw_off[]){from, to}, sum);
@@ -69,7 +74,19 @@ void pw_sum_nodes(pw_sum_fn fn, const void *ctx, const pw_sim *sim, const int fi
       part[k * PW_SUMS + s] = sum[s];
     }
   }
-  add_parts(part, chunks, out);
+}
+
+void pw_sum_nodes_end(const pw_sim *sim, const int field[2], const pw_real *part, pw_real *out)
+{
+  add_parts(part, chunks_of(sim, field), out);
+}
+
+void pw_sum_nodes(pw_sum_fn fn, const void *ctx, const pw_sim *sim, const int field[2],
+                  pw_real *part, pw_real *out)
+{
+#pragma omp parallel default(none) shared(fn, ctx, sim, field, part) num_threads(sim->threads)
+  pw_sum_nodes_part(fn, ctx, sim, field, part, omp_get_thread_num(), omp_get_num_threads());
+  pw_sum_nodes_end(sim, field, part, out);
 }
 
 int pw_effect_instance(const pw_sim *sim, const void *param)

@@ -35,6 +35,12 @@ void pw_sum_items(pw_sum_fn fn, const void *ctx, pw_off n, int threads, pw_real 
 void pw_sum_nodes(pw_sum_fn fn, const void *ctx, const pw_sim *sim, const int field[2],
                   pw_real *part, pw_real *out);
 
+/** @brief What one of @p threads adds to such a sum, into @p part; the same for all of them, and
+ *  then pw_sum_nodes_end(), give it. For hooks of PW_STAGE_MOTION. */
+void pw_sum_nodes_part(pw_sum_fn fn, const void *ctx, const pw_sim *sim, const int field[2],
+                       pw_real *part, int thread, int threads);
+void pw_sum_nodes_end(const pw_sim *sim, const int field[2], const pw_real *part, pw_real *out);
+
 /** @brief Which instance of its effect, from 0, has the parameters @p param of @p sim's scene. */
 int pw_effect_instance(const pw_sim *sim, const void *param);
 

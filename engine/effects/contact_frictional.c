@@ -50,6 +50,7 @@ typedef struct frictional {
   const pw_contact_frictional_param *param;
   window *support;  /* [nblock] nodes that a block may scatter to */
   bool *near;       /* [nblock] its support holds nodes of both bodies */
+  window meeting;   /* what these nodes span, in this step */
   pw_real *surface; /* [2][nnode][PW_NODE] surface normals and stresses of slave and master */
   pw_idx count;
   contact_node *list; /* [nnode] */
@@ -78,6 +79,13 @@ static bool window_meets(const window *a, const window *b)
          b->low[1] <= a->high[1];
 }
 
+/* Nodes within reach of an element, which points of it may scatter to until they are sorted anew. */
+static window window_of(const pw_blocks *b, pw_idx elem)
+{
+  const pw_idx i = elem % b->cells[0], j = elem / b->cells[0];
+  return (window){{i - b->reach, j - b->reach}, {i + 1 + b->reach, j + 1 + b->reach}};
+}
+
 /* Nodes within reach of the elements of each block. */
 static void set_supports(const pw_sim *sim, window *support)
 {
@@ -85,8 +93,8 @@ static void set_supports(const pw_sim *sim, window *support)
   for (pw_idx k = 0; k < b->nblock; k++) {
     window w = window_empty();
     for (pw_idx e = b->elem_start[k]; e < b->elem_start[k + 1]; e++) {
-      pw_idx i = b->elem[e] % b->cells[0], j = b->elem[e] / b->cells[0];
-      window_add(&w, &(window){{i - b->reach, j - b->reach}, {i + 1 + b->reach, j + 1 + b->reach}});
+      const window reach = window_of(b, b->elem[e]);
+      window_add(&w, &reach);
     }
     for (int a = 0; a < 2; a++) {
       w.low[a] = w.low[a] > 0 ? w.low[a] : 0;
@@ -108,6 +116,8 @@ static window list_nodes(const pw_sim *sim, frictional *c)
     const pw_off at = (pw_off)k * PW_NODE + PW_NODE_MASS;
     if (!pw_nodes_in_use(nodes, master, k)) {
       k = pw_nodes_group_end(nodes, master, k) - 1;
+    } else if (!pw_nodes_in_use(nodes, slave, k)) {
+      k = pw_nodes_group_end(nodes, slave, k) - 1;
     } else if (b[at] > sim->mass_cut_off && a[at] > sim->mass_cut_off) {
       const pw_idx i = k % sim->mesh.nodes[0], j = k / sim->mesh.nodes[0];
       c->list[c->count++] = (contact_node){.node = k};
@@ -122,6 +132,23 @@ static pw_real *surface_of(const pw_sim *sim, const frictional *c, int field)
   return c->surface + (pw_off)field * sim->nodes.nnode * PW_NODE;
 }
 
+/* Those of the points [first, end) that can reach a node with both bodies, run by run. */
+static void scatter_runs(const pw_sim *sim, const frictional *c, pw_real *surface, pw_idx first,
+                         pw_idx end)
+{
+  for (pw_idx k = first; k < end;) {
+    pw_idx from = k;
+    for (bool near = true; near && k < end; k += near) {
+      const window reach = window_of(&sim->blocks, sim->points.home[k]);
+      near = window_meets(&reach, &c->meeting);
+    }
+    if (k > from) {
+      sim->kernels->p2g_surface(&sim->transfer, surface, from, k);
+    }
+    k += k < end; /* that one is too far */
+  }
+}
+
 static void scatter_surface(void *ctx, pw_idx block)
 {
   frictional *c = ctx;
@@ -129,21 +156,18 @@ static void scatter_surface(void *ctx, pw_idx block)
   const pw_blocks *b = &sim->blocks;
   for (int body = 0; c->near[block] && body < b->nbody; body++) {
     const pw_idx *start = b->point_start + (pw_off)block * b->nbody + body;
-    if (start[1] > start[0]) {
-      sim->kernels->p2g_surface(&sim->transfer, surface_of(sim, c, sim->body[body].field), start[0],
-                                start[1]);
-    }
+    scatter_runs(sim, c, surface_of(sim, c, sim->body[body].field), start[0], start[1]);
   }
 }
 
 /* Mark the blocks that can reach a node with both bodies; returns how many points they hold. */
-static pw_idx mark_near(const pw_sim *sim, frictional *c, const window *meeting)
+static pw_idx mark_near(const pw_sim *sim, frictional *c)
 {
   const pw_blocks *b = &sim->blocks;
   pw_idx points = 0;
   for (pw_idx k = 0; k < b->nblock; k++) {
     const pw_idx *start = b->point_start + (pw_off)k * b->nbody;
-    c->near[k] = window_meets(&c->support[k], meeting);
+    c->near[k] = window_meets(&c->support[k], &c->meeting);
     points += c->near[k] ? start[b->nbody] - start[0] : 0;
   }
   return points;
@@ -167,11 +191,11 @@ static pw_status add_surfaces(pw_sim *sim, void *ctx)
 {
   frictional *c = ctx;
   const pw_blocks *b = &sim->blocks;
-  const window meeting = list_nodes(sim, c);
+  c->meeting = list_nodes(sim, c);
   if (c->count == 0) {
     return PW_OK;
   }
-  const pw_idx points = mark_near(sim, c, &meeting);
+  const pw_idx points = mark_near(sim, c);
   clear_surfaces(sim, c);
   if (points > FEW_POINTS * b->ncolour) {
     pw_assemble_coloured(b, sim->threads, scatter_surface, c);

@@ -111,8 +111,8 @@ static pw_status scatter_remap(pw_sim *sim, void *ctx)
 {
   (void)sim;
   pw_penalty *c = ctx;
-  pw_interface_velocity(&c->slave, c->rec[0]);
-  pw_interface_velocity(&c->master, c->rec[1]);
+  pw_interface_velocity(&c->slave, c->rec[0], false);
+  pw_interface_velocity(&c->master, c->rec[1], false);
   pw_interface_remap(&c->slave, c->rec[0]);
   pw_interface_remap(&c->master, c->rec[1]);
   return PW_OK;
@@ -129,7 +129,7 @@ static pw_status move_lines(pw_sim *sim, void *ctx)
       continue;
     }
     if (!musl) {
-      pw_interface_velocity(line[side], c->rec[side]);
+      pw_interface_velocity(line[side], c->rec[side], true);
     }
     pw_interface_move(line[side], c->rec[side], musl ? PW_NODE_REMAP : PW_NODE_VEL, sim->dt);
   }

@@ -59,6 +59,7 @@ static void damp_node(pw_real alpha, pw_real *r, pw_real *force)
   }
 }
 
+/* Opposes what all others together have added, so one by one after them. */
 static pw_status damp(pw_sim *sim, void *ctx)
 {
   damping *c = ctx;
@@ -132,7 +133,7 @@ static pw_status create(pw_sim *sim, const void *param, void **ctx)
 }
 
 static const pw_hook hooks[] = {
-    {PW_STAGE_NODE_FORCE, damp},
+    {PW_STAGE_NODE_TOTAL, damp},
     {PW_STAGE_END, add_dissipation},
     {0, NULL},
 };

@@ -50,68 +50,83 @@ static void set_acceleration(pw_sim *sim, gravity *c)
   sim->load_factor = ramp;
 }
 
-/* The weight of the water displaced at the nodes, against gravity. */
-static void add_buoyancy(pw_sim *sim, const gravity *c)
+/* Mass of the water displaced at records [*first, *last), which are cut down to those of the field
+ * that has some; NULL: none. */
+static const pw_real *water_at(const pw_sim *sim, pw_off *first, pw_off *last)
 {
-  const pw_real *water = sim->buoyant, gx = c->g[0], gy = c->g[1];
-  pw_real *rec = pw_nodes_field(&sim->nodes, sim->buoyant_field);
-  const pw_off n = sim->nodes.nnode;
-#pragma omp parallel for default(none) shared(water, rec, n, gx, gy) num_threads(sim->threads)     \
-    schedule(static)
-  for (pw_off k = 0; k < n; k++) {
-    rec[k * PW_NODE + PW_NODE_FORCE] -= water[k * PW_NODE + PW_NODE_MASS] * gx;
-    rec[k * PW_NODE + PW_NODE_FORCE + 1] -= water[k * PW_NODE + PW_NODE_MASS] * gy;
+  const pw_off from = (pw_off)sim->buoyant_field * sim->nodes.nnode, to = from + sim->nodes.nnode;
+  *first = *first > from ? *first : from;
+  *last = *last < to ? *last : to;
+  return sim->buoyant && *first < *last ? sim->buoyant + (*first - from) * PW_NODE : NULL;
+}
+
+static void weigh(const pw_sim *sim, const pw_real *g, pw_off first, pw_off last)
+{
+  for (pw_off k = first; k < last; k++) {
+    pw_real *r = sim->nodes.rec + k * PW_NODE;
+    r[PW_NODE_FORCE] += r[PW_NODE_MASS] * g[0];
+    r[PW_NODE_FORCE + 1] += r[PW_NODE_MASS] * g[1];
+  }
+  const pw_real *water = water_at(sim, &first, &last);
+  for (pw_off k = first; water && k < last; k++, water += PW_NODE) {
+    pw_real *r = sim->nodes.rec + k * PW_NODE;
+    r[PW_NODE_FORCE] -= water[PW_NODE_MASS] * g[0];
+    r[PW_NODE_FORCE + 1] -= water[PW_NODE_MASS] * g[1];
   }
 }
 
-static pw_status add_weight(pw_sim *sim, void *ctx)
+static void weigh_part(const pw_sim *sim, void *ctx, int part, int parts)
+{
+  const gravity *c = ctx;
+  pw_idx i, end;
+  for (pw_nodes_part(&sim->nodes, part, parts, &i, &end); i < end; i++) {
+    pw_off first, last;
+    pw_nodes_group(&sim->nodes, i, &first, &last);
+    weigh(sim, c->g, first, last);
+  }
+}
+
+static pw_status begin(pw_sim *sim, void *ctx)
 {
   gravity *c = ctx;
   set_acceleration(sim, c);
-  const pw_nodes *nodes = &sim->nodes;
-  const pw_real gx = c->g[0], gy = c->g[1];
-#pragma omp parallel for default(none) shared(nodes, gx, gy) num_threads(sim->threads)             \
-    schedule(static)
-  for (pw_idx i = 0; i < nodes->nused; i++) {
-    pw_off k, last;
-    for (pw_nodes_group(nodes, i, &k, &last); k < last; k++) {
-      pw_real *r = nodes->rec + k * PW_NODE;
-      r[PW_NODE_FORCE] += r[PW_NODE_MASS] * gx;
-      r[PW_NODE_FORCE + 1] += r[PW_NODE_MASS] * gy;
-    }
-  }
-  if (sim->buoyant) {
-    add_buoyancy(sim, c);
-  }
   for (int k = 0; k < sim->nstructure; k++) { /* its work is the structure's own affair */
     pw_structure_add_weight(&sim->structure[k], c->g);
   }
   return PW_OK;
 }
 
-/* Momentum with the mean velocities of the step. */
+static pw_status weigh_all(pw_sim *sim, void *ctx)
+{
+  PW_TRY(begin(sim, ctx));
+  weigh_part(sim, ctx, 0, 1);
+  return PW_OK;
+}
+
+/* Momentum with the mean velocities of the step, without that of the water displaced. */
 static void momentum(const void *ctx, pw_off first, pw_off last, pw_real *sum)
 {
   const pw_sim *sim = ctx;
+  pw_real x = sum[0], y = sum[1];
   for (pw_off k = first; k < last; k++) {
     const pw_real *r = sim->nodes.rec + k * PW_NODE;
-    sum[0] += r[PW_NODE_MASS] * pw_node_mean_velocity(sim, r, 0);
-    sum[1] += r[PW_NODE_MASS] * pw_node_mean_velocity(sim, r, 1);
+    x += r[PW_NODE_MASS] * pw_node_mean_velocity(sim, r, 0);
+    y += r[PW_NODE_MASS] * pw_node_mean_velocity(sim, r, 1);
   }
+  const pw_real *water = water_at(sim, &first, &last);
+  for (pw_off k = first; water && k < last; k++, water += PW_NODE) {
+    const pw_real *r = sim->nodes.rec + k * PW_NODE;
+    x -= water[PW_NODE_MASS] * pw_node_mean_velocity(sim, r, 0);
+    y -= water[PW_NODE_MASS] * pw_node_mean_velocity(sim, r, 1);
+  }
+  sum[0] = x;
+  sum[1] = y;
 }
 
-/* The same of the water displaced. */
-static void momentum_of_water(const void *ctx, pw_off first, pw_off last, pw_real *sum)
+static void sum_part(const pw_sim *sim, void *ctx, int part, int parts)
 {
-  const pw_sim *sim = ctx;
-  const pw_real *water = sim->buoyant;
-  const pw_real *rec = pw_nodes_field(&sim->nodes, sim->buoyant_field);
-  for (pw_off k = first; k < last; k++) {
-    for (int a = 0; a < 2; a++) {
-      sum[a] +=
-          water[k * PW_NODE + PW_NODE_MASS] * pw_node_mean_velocity(sim, rec + k * PW_NODE, a);
-    }
-  }
+  const gravity *c = ctx;
+  pw_sum_nodes_part(momentum, sim, sim, (const int[]){0, sim->nodes.nfield}, c->part, part, parts);
 }
 
 /* Work of the nodal weights: in axisymmetry this is the weight's work over the whole domain of a
@@ -120,13 +135,15 @@ static pw_status add_work(pw_sim *sim, void *ctx)
 {
   const gravity *c = ctx;
   pw_real sum[PW_SUMS];
-  pw_sum_nodes(momentum, sim, sim, (const int[]){0, sim->nodes.nfield}, c->part, sum);
+  pw_sum_nodes_end(sim, (const int[]){0, sim->nodes.nfield}, c->part, sum);
   sim->energy.external += sim->measure * sim->dt * (c->g[0] * sum[0] + c->g[1] * sum[1]);
-  if (sim->buoyant) {
-    pw_sum_items(momentum_of_water, sim, sim->nodes.nnode, sim->threads, c->part, sum);
-    sim->energy.external -= sim->measure * sim->dt * (c->g[0] * sum[0] + c->g[1] * sum[1]);
-  }
   return PW_OK;
+}
+
+static pw_status sum_and_add_work(pw_sim *sim, void *ctx)
+{
+  sum_part(sim, ctx, 0, 1);
+  return add_work(sim, ctx);
 }
 
 static void destroy(void **ctx)
@@ -153,8 +170,20 @@ static pw_status create(pw_sim *sim, const void *param, void **ctx)
 }
 
 static const pw_hook hooks[] = {
-    {PW_STAGE_NODE_FORCE, add_weight},
+    {PW_STAGE_NODE_FORCE, begin},
     {PW_STAGE_END, add_work},
+    {0, NULL},
+};
+
+static const pw_part_hook part_hooks[] = {
+    {PW_STAGE_WEIGHT, weigh_part},
+    {PW_STAGE_MOTION, sum_part},
+    {0, NULL},
+};
+
+static const pw_hook implicit_hooks[] = {
+    {PW_STAGE_NODE_FORCE, weigh_all},
+    {PW_STAGE_END, sum_and_add_work},
     {0, NULL},
 };
 
@@ -163,7 +192,8 @@ const pw_effect pw_effect_gravity = {
     .brief = "weight of all points, with a ramp; may turn by an angle",
     .keys = keys,
     .hooks = hooks,
-    .implicit = hooks,
+    .part_hooks = part_hooks,
+    .implicit = implicit_hooks,
     .check = check,
     .create = create,
     .destroy = destroy,
