@@ -26,9 +26,9 @@ typedef enum pw_stage {
   PW_STAGE_WEIGHT,     /**< the same, each record by itself: a part of them (pw_part_hook_fn) */
   PW_STAGE_NODE_TOTAL, /**< the same, by what all others together have added */
   PW_STAGE_CONSTRAINT, /**< change velocities at t(n+1); FORCE slots hold v(n) */
-  PW_STAGE_REMAP_P2G, /**< MUSL: slot REMAP is still empty: put in momenta other than the points' */
+  PW_STAGE_REMAP_P2G, /**< MUSL: other momenta than the points' into slot REMAP; FORCE holds v(n) */
   PW_STAGE_REMAP,     /**< MUSL: the same constraints on the remapped velocities */
-  PW_STAGE_MOTION,    /**< velocities of the step are final: sums over a part of the records */
+  PW_STAGE_MOTION,    /**< once a step, velocities are final: sums over a part of the records */
   PW_STAGE_MESH,      /**< points and interfaces have moved */
   PW_STAGE_END,       /**< probes, records; sim->time is t(n+1) */
   PW_STAGE_COUNT

@@ -17,10 +17,10 @@
  *   PW_NODE_ACTIVE            0                1 when mass > cut-off     same
  *
  * A field seldom fills the grid: the pile's has a tenth of its nodes. Loops run over groups of
- * PW_NODE_GROUP records that are in use, which are those that any block's points can reach
- * (pw_nodes_reset, pw_nodes_use: engine/ranges.c) and those of interface lines. Nothing may be
- * scattered to the others and no step clears them: they have no mass, their other slots may hold
- * what a boundary or a given motion wrote.
+ * PW_NODE_GROUP records that are in use, which are those within reach of an element that held a
+ * point at the last sort (pw_nodes_reset, pw_nodes_use: engine/ranges.c) and those of interface
+ * lines. Nothing may be scattered to the others, no step clears them, and nobody may read more of
+ * them than that they have no mass.
  */
 #ifndef PW_ENGINE_NODES_H
 #define PW_ENGINE_NODES_H

@@ -49,7 +49,7 @@ void pw_effect_fields(const pw_sim *sim, int b, int *first, int *last);
 
 /**
  * @brief Velocity through which the forces on a node work in this step, component @p a, at
- *        PW_STAGE_END.
+ *        PW_STAGE_MOTION and PW_STAGE_END.
  *
  * The kinetic energy of the points changes by dt sum f_i . (v_i(n) + v_i) / 2, v_i the remapped
  * velocity (MUSL) or v_i(n+1). With the new velocity alone the balance of energies would drift in

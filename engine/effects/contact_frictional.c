@@ -79,7 +79,7 @@ static bool window_meets(const window *a, const window *b)
          b->low[1] <= a->high[1];
 }
 
-/* Nodes within reach of an element, which points of it may scatter to until they are sorted anew. */
+/* Nodes within reach of an element, to which its points may scatter until they are sorted anew. */
 static window window_of(const pw_blocks *b, pw_idx elem)
 {
   const pw_idx i = elem % b->cells[0], j = elem / b->cells[0];

@@ -50,28 +50,21 @@ static void set_acceleration(pw_sim *sim, gravity *c)
   sim->load_factor = ramp;
 }
 
-/* Mass of the water displaced at records [*first, *last), which are cut down to those of the field
- * that has some; NULL: none. */
-static const pw_real *water_at(const pw_sim *sim, pw_off *first, pw_off *last)
+/* Mass of the water displaced at a record. */
+static pw_real water_at(const pw_sim *sim, pw_off k)
 {
-  const pw_off from = (pw_off)sim->buoyant_field * sim->nodes.nnode, to = from + sim->nodes.nnode;
-  *first = *first > from ? *first : from;
-  *last = *last < to ? *last : to;
-  return sim->buoyant && *first < *last ? sim->buoyant + (*first - from) * PW_NODE : NULL;
+  const pw_off i = k - (pw_off)sim->buoyant_field * sim->nodes.nnode;
+  return i >= 0 && i < sim->nodes.nnode ? sim->buoyant[i * PW_NODE + PW_NODE_MASS] : 0.0;
 }
 
 static void weigh(const pw_sim *sim, const pw_real *g, pw_off first, pw_off last)
 {
+  const bool wet = sim->buoyant != NULL;
   for (pw_off k = first; k < last; k++) {
     pw_real *r = sim->nodes.rec + k * PW_NODE;
-    r[PW_NODE_FORCE] += r[PW_NODE_MASS] * g[0];
-    r[PW_NODE_FORCE + 1] += r[PW_NODE_MASS] * g[1];
-  }
-  const pw_real *water = water_at(sim, &first, &last);
-  for (pw_off k = first; water && k < last; k++, water += PW_NODE) {
-    pw_real *r = sim->nodes.rec + k * PW_NODE;
-    r[PW_NODE_FORCE] -= water[PW_NODE_MASS] * g[0];
-    r[PW_NODE_FORCE + 1] -= water[PW_NODE_MASS] * g[1];
+    const pw_real m = wet ? r[PW_NODE_MASS] - water_at(sim, k) : r[PW_NODE_MASS];
+    r[PW_NODE_FORCE] += m * g[0];
+    r[PW_NODE_FORCE + 1] += m * g[1];
   }
 }
 
@@ -107,17 +100,13 @@ static pw_status weigh_all(pw_sim *sim, void *ctx)
 static void momentum(const void *ctx, pw_off first, pw_off last, pw_real *sum)
 {
   const pw_sim *sim = ctx;
+  const bool wet = sim->buoyant != NULL;
   pw_real x = sum[0], y = sum[1];
   for (pw_off k = first; k < last; k++) {
     const pw_real *r = sim->nodes.rec + k * PW_NODE;
-    x += r[PW_NODE_MASS] * pw_node_mean_velocity(sim, r, 0);
-    y += r[PW_NODE_MASS] * pw_node_mean_velocity(sim, r, 1);
-  }
-  const pw_real *water = water_at(sim, &first, &last);
-  for (pw_off k = first; water && k < last; k++, water += PW_NODE) {
-    const pw_real *r = sim->nodes.rec + k * PW_NODE;
-    x -= water[PW_NODE_MASS] * pw_node_mean_velocity(sim, r, 0);
-    y -= water[PW_NODE_MASS] * pw_node_mean_velocity(sim, r, 1);
+    const pw_real m = wet ? r[PW_NODE_MASS] - water_at(sim, k) : r[PW_NODE_MASS];
+    x += m * pw_node_mean_velocity(sim, r, 0);
+    y += m * pw_node_mean_velocity(sim, r, 1);
   }
   sum[0] = x;
   sum[1] = y;

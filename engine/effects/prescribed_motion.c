@@ -12,6 +12,7 @@
  * A body without points keeps that force and its work itself (engine/structure.h); of a rod it is
  * the head that moves as given.
  */
+#include "engine/assemble.h"
 #include "engine/effects/common.h"
 #include "engine/effects/load_curve.h"
 #include "engine/effects/params.h"
@@ -108,28 +109,42 @@ static pw_status begin(pw_sim *sim, void *ctx)
 
 static void gained_momentum(const void *ctx, pw_off first, pw_off last, pw_real *sum)
 {
-  const pw_real *rec = ctx;
+  const pw_sim *sim = ctx;
   for (pw_off k = first; k < last; k++) {
-    const pw_real *r = rec + k * PW_NODE;
+    const pw_real *r = sim->nodes.rec + k * PW_NODE;
     for (int a = 0; a < 2; a++) {
       sum[a] += r[PW_NODE_MASS] * (r[PW_NODE_VEL + a] - r[PW_NODE_FORCE + a]);
     }
   }
 }
 
-/* Write the given velocity into a slot of every node of the body's field. */
-static void overwrite(pw_sim *sim, const motion *c, int slot)
+/* A body whose given velocity goes into a slot of its field's records. */
+typedef struct overwriting {
+  const pw_nodes *nodes;
+  const pw_body *body;
+  int slot;
+} overwriting;
+
+static void overwrite_part(void *ctx, int part, int parts)
 {
-  const pw_body *b = &sim->body[c->param->body];
-  const pw_real vx = b->prescribed_v[0], vy = b->prescribed_v[1];
-  pw_real *rec = pw_nodes_field(&sim->nodes, b->field) + slot;
-  const pw_idx n = sim->nodes.nnode;
-#pragma omp parallel for default(none) shared(rec, n, vx, vy) num_threads(sim->threads)            \
-    schedule(static)
-  for (pw_idx k = 0; k < n; k++) {
-    rec[(pw_off)k * PW_NODE] = vx;
-    rec[(pw_off)k * PW_NODE + 1] = vy;
+  const overwriting *o = ctx;
+  const pw_off from = (pw_off)o->body->field * o->nodes->nnode, to = from + o->nodes->nnode;
+  pw_idx i, end;
+  for (pw_nodes_part(o->nodes, part, parts, &i, &end); i < end; i++) {
+    pw_off k, last;
+    pw_nodes_group(o->nodes, i, &k, &last);
+    for (k = k > from ? k : from; k < last && k < to; k++) {
+      pw_real *v = o->nodes->rec + k * PW_NODE + o->slot;
+      v[0] = o->body->prescribed_v[0];
+      v[1] = o->body->prescribed_v[1];
+    }
   }
+}
+
+static void overwrite(const pw_sim *sim, const motion *c, int slot)
+{
+  pw_for_parts(sim->threads, overwrite_part,
+               &(overwriting){&sim->nodes, &sim->body[c->param->body], slot});
 }
 
 /* The step of a structure is over: its force and work are known. */
@@ -155,8 +170,7 @@ static pw_status drive(pw_sim *sim, void *ctx)
   }
   const pw_body *b = &sim->body[c->param->body];
   pw_real sum[PW_SUMS], work = 0.0;
-  pw_sum_items(gained_momentum, pw_nodes_field(&sim->nodes, b->field), sim->nodes.nnode,
-               sim->threads, c->part, sum);
+  pw_sum_nodes(gained_momentum, sim, sim, (const int[]){b->field, b->field + 1}, c->part, sum);
   for (int a = 0; a < 2; a++) {
     pw_real v = b->prescribed_v[a], inertia = c->mass * (v - c->velocity[a]);
     c->force[a] = sim->measure * (inertia - sum[a]) / sim->dt;
