@@ -210,18 +210,18 @@ def write_tables(out, rows):
 
 
 def gnuplot(out, name, title, xlabel, ylabel, lines, extra=""):
-    """lines: (title, [(x, y), ...])"""
+    """lines: (title, gnuplot's style, [(x, y), ...])"""
     script = [f'set terminal pngcairo size 900,640 font ",11"', f"set output '{out / name}'",
               f'set title "{title}"', f'set xlabel "{xlabel}"', f'set ylabel "{ylabel}"',
               "set grid", "set key outside right", extra]
-    lines = [(t, [p for p in pts if not any(math.isnan(v) for v in p)]) for t, pts in lines]
-    lines = [(t, pts) for t, pts in lines if pts]
+    lines = [(t, s, [p for p in pts if not any(math.isnan(v) for v in p)]) for t, s, pts in lines]
+    lines = [line for line in lines if line[2]]
     if not lines:
         return
     script.append("plot " + ", ".join(
-        f"'-' with linespoints pointsize {0.9 if len(p) < 20 else 0} title \"{t}\""
-        for t, p in lines))
-    for _, pts in lines:
+        f"'-' with linespoints {s} pointsize {0.9 if len(p) < 20 else 0} title \"{t}\""
+        for t, s, p in lines))
+    for _, _, pts in lines:
         script += [f"{x:.9g} {y:.9g}" for x, y in pts] + ["e"]
     try:
         subprocess.run(["gnuplot"], input="\n".join(script), text=True, check=True)
@@ -236,24 +236,32 @@ def compared(args):
     return ["penetration_after_gravity_m", "set_1_m", "penetration_m"]
 
 
+def style(names, name, kind, kinds):
+    """A colour for each name, dashes and points for each kind."""
+    return (f"linecolor {names.index(name) + 1} linewidth 1.5 dashtype {kinds.index(kind) + 1} "
+            f"pointtype {2 * kinds.index(kind) + 5}")
+
+
 def plots(args, rows, folders):
     unit = "resistance / base area, kPa" if args.study == "push" else "m"
     series = [(c, key) for c in args.contacts for key in compared(args)]
     for name, x, label in (("convergence.png", "radius_over_cell", "pile radius / cell"),
                            ("time.png", "wall_s", f"wall time on {args.threads} threads, s")):
         gnuplot(args.out, name, f"pile {args.study}: {unit}", label, unit,
-                [(f"{c}, {key}".replace("_", " "),
+                [(f"{c}, {key}".replace("_", " "), style(args.contacts, c, key, compared(args)),
                   [(r[x], r[key]) for r in rows if r["contact"] == c]) for c, key in series],
                 "set logscale x 2" if name == "convergence.png" else "set logscale x")
     if args.study == "push":
         gnuplot(args.out, "resistance.png", "pile pushed at 1 m/s",
                 "resistance / base area, kPa", "depth of the tip, m",
-                [(f"{c} {n:g}", [(q, d) for d, q in curve(f)]) for (c, n), f in folders.items()],
+                [(f"{c} {n:g}", style(args.contacts, c, n, args.resolutions),
+                  [(q, d) for d, q in curve(f)]) for (c, n), f in folders.items()],
                 "set yrange [*:*] reverse")
     else:
         gnuplot(args.out, "penetration.png", "hammered pile", "time, s", "penetration, m",
-                [(f"{c} {n:g}", [(float(r["time_s"]), float(r["penetration_m"]))
-                                 for r in history(f)]) for (c, n), f in folders.items()],
+                [(f"{c} {n:g}", style(args.contacts, c, n, args.resolutions),
+                  [(float(r["time_s"]), float(r["penetration_m"])) for r in history(f)])
+                 for (c, n), f in folders.items()],
                 "set yrange [*:*] reverse")
 
 
