@@ -219,19 +219,14 @@ static bool held_before(const pw_sim *sim, const absorbing *c, pw_idx node, int 
   return false;
 }
 
-/* Nodes without mass carry no soil: nothing holds them, and what their slots say is no motion. */
-static bool carries(const pw_real *r)
-{
-  return r[PW_NODE_MASS] > 0.0;
-}
-
-/* Towards the mean reaction; the force slots hold internal forces and loads, no damping yet. */
+/* Towards the mean reaction; the force slots hold internal forces and loads, no damping yet. Nodes
+ * without mass are not held, and what their slots say is no motion: here and in all loops below. */
 static void sum_reactions(const pw_sim *sim, absorbing *c, pw_real weight)
 {
   for (pw_idx q = 0; q < c->nq; q++) {
     const pw_real *r = record(sim, c, q);
     for (int a = 0; a < 2; a++) {
-      if (carries(r) && holds(c, a) && !held_before(sim, c, c->node[q % c->n], a)) {
+      if (r[PW_NODE_MASS] > 0.0 && holds(c, a) && !held_before(sim, c, c->node[q % c->n], a)) {
         c->q[q].held[a] -= weight * r[PW_NODE_FORCE + a];
       }
     }
@@ -276,7 +271,7 @@ static pw_status add_held(pw_sim *sim, void *ctx)
   }
   for (pw_idx q = 0; q < c->nq; q++) {
     pw_real *r = record(sim, c, q);
-    for (int a = 0; carries(r) && a < 2; a++) {
+    for (int a = 0; r[PW_NODE_MASS] > 0.0 && a < 2; a++) {
       r[PW_NODE_FORCE + a] += c->q[q].held[a] - c->q[q].stiffness[a] * c->q[q].moved[a];
     }
   }
@@ -289,7 +284,7 @@ static void hold(pw_sim *sim, absorbing *c)
   pw_real gained[2] = {0.0, 0.0};
   for (pw_idx q = 0; q < c->nq; q++) {
     pw_real *r = record(sim, c, q);
-    for (int a = 0; carries(r) && a < 2; a++) {
+    for (int a = 0; r[PW_NODE_MASS] > 0.0 && a < 2; a++) {
       if (holds(c, a)) {
         gained[a] += r[PW_NODE_MASS] * (r[PW_NODE_VEL + a] - r[PW_NODE_FORCE + a]);
         r[PW_NODE_VEL + a] = r[PW_NODE_FORCE + a] = 0.0;
@@ -324,7 +319,7 @@ static pw_status absorb(pw_sim *sim, void *ctx)
     absorber *b = &c->q[q];
     pw_real *r = record(sim, c, q);
     b->force[0] = b->force[1] = 0.0;
-    for (int a = 0; carries(r) && a < 2; a++) {
+    for (int a = 0; r[PW_NODE_MASS] > 0.0 && a < 2; a++) {
       pw_real factor = a == c->normal ? p->normal_factor : p->shear_factor * p->shear_ratio;
       pw_real rate = factor * b->impedance * b->area + sim->dt * b->stiffness[a];
       pw_real m = r[PW_NODE_ACTIVE] > 0.0 ? r[PW_NODE_MASS] : 1.0;
@@ -345,7 +340,7 @@ static pw_status hold_remapped(pw_sim *sim, void *ctx)
   const absorbing *c = ctx;
   for (pw_idx q = 0; !c->active && q < c->nq; q++) {
     pw_real *r = record(sim, c, q), *v = r + sim->node_slot;
-    for (int a = 0; carries(r) && a < 2; a++) {
+    for (int a = 0; r[PW_NODE_MASS] > 0.0 && a < 2; a++) {
       v[a] = holds(c, a) ? 0.0 : v[a];
     }
   }
@@ -362,10 +357,10 @@ static pw_status close_step(pw_sim *sim, void *ctx)
     absorber *b = &c->q[q];
     const pw_real *r = record(sim, c, q);
     for (int a = 0; a < 2; a++) {
-      pw_real du = carries(r) ? sim->dt * pw_node_mean_velocity(sim, r, a) : 0.0;
+      pw_real du = r[PW_NODE_MASS] > 0.0 ? sim->dt * pw_node_mean_velocity(sim, r, a) : 0.0;
       load += b->held[a] * du;
       taken -= b->force[a] * du;
-      b->moved[a] += carries(r) ? sim->dt * r[sim->node_slot + a] : 0.0;
+      b->moved[a] += r[PW_NODE_MASS] > 0.0 ? sim->dt * r[sim->node_slot + a] : 0.0;
       stored += 0.5 * b->stiffness[a] * b->moved[a] * b->moved[a];
     }
   }
