@@ -40,9 +40,11 @@ typedef struct pw_hook {
   pw_hook_fn fn;
 } pw_hook; /**< a list ends with {0, NULL} */
 
-/** Work of one thread on part @p part of @p parts of the nodal records (pw_nodes_part), in stages
- *  WEIGHT and MOTION of explicit steps: it runs within the loops that come next, as a pass over the
- *  records on its own costs what their way between processors costs. */
+/** Work of one thread on part @p part of @p parts of the nodal records (pw_nodes_part), each by
+ *  itself, in stages WEIGHT, CONSTRAINT, REMAP and MOTION of explicit steps: it runs within the loop
+ *  over the records that the step makes anyway, as a pass on its own, or one thread that visits the
+ *  records of the others, costs what the way between processors costs. In stages CONSTRAINT and
+ *  REMAP only while no ordinary hook comes before; else in a loop of its own. */
 typedef void (*pw_part_hook_fn)(const pw_sim *sim, void *ctx, int part, int parts);
 typedef struct pw_part_hook {
   pw_stage stage;
@@ -70,7 +72,7 @@ struct pw_effect {
   const pw_key *keys;         /**< offsets into its parameter struct */
   const pw_effect_rows *rows; /**< a list in its section, or NULL */
   const pw_hook *hooks;
-  const pw_part_hook *part_hooks; /**< stages WEIGHT and MOTION; NULL: none */
+  const pw_part_hook *part_hooks; /**< NULL: none */
   /** Hooks of implicit steps on the grid (engine/step_implicit.h), NULL: they do not know this
    *  effect. PW_STAGE_CONSTRAINT there holds nodes, PW_STAGE_NODE_FORCE adds what acts at
    *  sim->time + sim->dt; both run for every part of a step, and more than once. */

@@ -19,6 +19,9 @@ pw_status pw_nodes_create(pw_idx nnode, int nfield, pw_nodes *out)
   if (s == PW_OK) {
     s = pw_mem_alloc("nodes: groups in use", nodes.ngroup, sizeof *nodes.in_use, &nodes.in_use);
   }
+  if (s == PW_OK) {
+    s = pw_mem_alloc("nodes: places of groups", nodes.ngroup, sizeof *nodes.place, &nodes.place);
+  }
   if (s != PW_OK) {
     pw_nodes_destroy(&nodes);
     return s;
@@ -35,6 +38,7 @@ void pw_nodes_destroy(pw_nodes *nodes)
   pw_mem_free(&nodes->rec);
   pw_mem_free(&nodes->used);
   pw_mem_free(&nodes->in_use);
+  pw_mem_free(&nodes->place);
   *nodes = (pw_nodes){0};
 }
 
@@ -49,6 +53,7 @@ static void use_group(pw_nodes *nodes, pw_idx g)
 {
   pw_off first, last;
   nodes->in_use[g] = true;
+  nodes->place[g] = nodes->nused;
   nodes->used[nodes->nused++] = g;
   pw_nodes_group(nodes, nodes->nused - 1, &first, &last);
   memset(nodes->rec + first * PW_NODE, 0, (size_t)(last - first) * PW_NODE * sizeof *nodes->rec);
@@ -65,8 +70,10 @@ void pw_nodes_use(pw_nodes *nodes, int f, pw_idx first, pw_idx n)
   }
 }
 
+/* The first part is the last of the grid, as with blocks (partition/share.h). */
 void pw_nodes_part(const pw_nodes *nodes, int part, int parts, pw_idx *first, pw_idx *last)
 {
+  part = parts - 1 - part;
   *first = (pw_idx)((pw_off)nodes->nused * part / parts);
   *last = (pw_idx)((pw_off)nodes->nused * (part + 1) / parts);
 }

@@ -43,8 +43,9 @@ typedef struct pw_nodes {
   pw_real *rec; /**< [nfield][nnode][PW_NODE] */
   pw_off count; /**< records: nfield * nnode */
   pw_idx ngroup, nused;
-  pw_idx *used; /**< [nused] groups in use: group g has the records [g, g + 1) * PW_NODE_GROUP */
-  bool *in_use; /**< [ngroup] */
+  pw_idx *used;  /**< [nused] groups in use: group g has the records [g, g + 1) * PW_NODE_GROUP */
+  bool *in_use;  /**< [ngroup] */
+  pw_idx *place; /**< [ngroup] of a group that is in use, its place in used */
 } pw_nodes;
 
 /** @brief All records zero and in use. @return PW_OK; PW_ERR_ARGUMENT; PW_ERR_MEMORY. */
@@ -70,6 +71,14 @@ static inline bool pw_nodes_in_use(const pw_nodes *nodes, int f, pw_idx k)
   return nodes->in_use[((pw_off)f * nodes->nnode + k) / PW_NODE_GROUP];
 }
 
+/** @brief Whether it is among groups [first, last) in use: those of a part (pw_nodes_part). */
+static inline bool pw_nodes_in_part(const pw_nodes *nodes, int f, pw_idx k, pw_idx first,
+                                    pw_idx last)
+{
+  const pw_off group = ((pw_off)f * nodes->nnode + k) / PW_NODE_GROUP;
+  return nodes->in_use[group] && nodes->place[group] >= first && nodes->place[group] < last;
+}
+
 /** @brief The first node of field @p f after the group of node @p k; at most nnode. */
 static inline pw_idx pw_nodes_group_end(const pw_nodes *nodes, int f, pw_idx k)
 {
@@ -85,7 +94,8 @@ static inline void pw_nodes_group(const pw_nodes *nodes, pw_idx i, pw_off *first
   *last = *first + PW_NODE_GROUP < nodes->count ? *first + PW_NODE_GROUP : nodes->count;
 }
 
-/** @brief Groups in use [*first, *last) of one of @p parts. */
+/** @brief Groups in use [*first, *last) of one of @p parts; part 0 has the last ones, the top of the
+ *  grid (partition/share.h says why). */
 void pw_nodes_part(const pw_nodes *nodes, int part, int parts, pw_idx *first, pw_idx *last);
 
 /** @brief Set every record in use to zero. */

@@ -63,7 +63,8 @@ static void spread(const pw_sim *sim, int f, pw_idx j, int slot, int n)
   }
 }
 
-/* Neighbouring kept rows share a hanging one, which is cleared when both have taken. */
+/* Neighbouring kept rows share a hanging one, which is cleared when both have taken. From the top
+ * down, as the parts of the nodes are given to the threads (pw_nodes_part). */
 void pw_pairs_collect(pw_sim *sim, int slot, int n)
 {
   const pw_idx rows = kept_rows(&sim->mesh), first = sim->mesh.pair_row[0];
@@ -72,11 +73,11 @@ void pw_pairs_collect(pw_sim *sim, int slot, int n)
     num_threads(sim->threads)
   {
 #pragma omp for schedule(static)
-    for (pw_idx k = 0; k < rows * fields; k++) {
+    for (pw_idx k = rows * fields - 1; k >= 0; k--) {
       take(sim, k / rows, first + 2 * (k % rows), slot, n);
     }
 #pragma omp for schedule(static)
-    for (pw_idx k = 0; k < (rows - 1) * fields; k++) {
+    for (pw_idx k = (rows - 1) * fields - 1; k >= 0; k--) {
       clear(sim, k / (rows - 1), first + 2 * (k % (rows - 1)) + 1, slot, n);
     }
   }
@@ -88,7 +89,7 @@ void pw_pairs_spread(pw_sim *sim, int slot, int n)
   const int fields = sim->nodes.nfield;
 #pragma omp parallel for default(none) shared(sim, pairs, first, fields, slot, n)                  \
     num_threads(sim->threads) schedule(static)
-  for (pw_idx k = 0; k < pairs * fields; k++) {
+  for (pw_idx k = pairs * fields - 1; k >= 0; k--) {
     spread(sim, k / pairs, first + 2 * (k % pairs) + 1, slot, n);
   }
 }

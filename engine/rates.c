@@ -61,8 +61,9 @@ pw_status pw_rates_create(pw_sim *sim)
     pw_blocks *set = &r->set[l];
     *set = sim->blocks;
     set->share_start = set->share_block = NULL;
-    set->share_size = set->share_work = set->share_load = NULL;
-    set->share_home = set->share_owner = set->share_order = NULL;
+    set->share_size = set->share_work = NULL;
+    set->share_line = set->share_owner = set->share_order = NULL;
+    set->share_place = set->share_sum = NULL;
     PW_TRY(pw_share_create(set, sim->threads));
   }
   return PW_OK;

@@ -3,6 +3,8 @@
 
 #include <stdio.h>
 
+#include "engine/assemble.h"
+
 static void append_effect(pw_sim *sim, int e, pw_stage stage)
 {
   const pw_effect *type = sim->scene.effect[e].type;
@@ -37,11 +39,37 @@ void pw_schedule_build(pw_sim *sim)
   sim->schedule.start[PW_STAGE_COUNT] = sim->schedule.n;
 }
 
+/* A hook that runs by parts, after one that does not. */
+typedef struct late_hook {
+  const pw_sim *sim;
+  const pw_scheduled *hook;
+} late_hook;
+
+static void run_late(void *ctx, int part, int parts)
+{
+  const late_hook *l = ctx;
+  l->hook->part(l->sim, l->hook->ctx, part, parts);
+}
+
+/* The first hook of a stage that does not run by parts, or the end of the stage. */
+static int first_whole(const pw_schedule *s, pw_stage stage)
+{
+  int k = s->start[stage];
+  while (k < s->start[stage + 1] && s->hook[k].part) {
+    k++;
+  }
+  return k;
+}
+
 pw_status pw_schedule_run(pw_sim *sim, pw_stage stage)
 {
   const pw_schedule *s = &sim->schedule;
-  for (int k = s->start[stage]; k < s->start[stage + 1]; k++) {
-    PW_TRY(s->hook[k].fn(sim, s->hook[k].ctx));
+  for (int k = first_whole(s, stage); k < s->start[stage + 1]; k++) {
+    if (s->hook[k].part) {
+      pw_for_parts(sim->threads, run_late, &(late_hook){sim, &s->hook[k]});
+    } else {
+      PW_TRY(s->hook[k].fn(sim, s->hook[k].ctx));
+    }
   }
   return PW_OK;
 }
@@ -49,7 +77,7 @@ pw_status pw_schedule_run(pw_sim *sim, pw_stage stage)
 void pw_schedule_run_part(const pw_sim *sim, pw_stage stage, int part, int parts)
 {
   const pw_schedule *s = &sim->schedule;
-  for (int k = s->start[stage]; k < s->start[stage + 1]; k++) {
+  for (int k = s->start[stage]; k < first_whole(s, stage); k++) {
     s->hook[k].part(sim, s->hook[k].ctx, part, parts);
   }
 }

@@ -111,10 +111,11 @@ struct pw_sim {
   pw_real *scratch; /**< [ld] */
 };
 
-/** @brief Run the hooks of @p stage in order. @return the first status that is not PW_OK. */
+/** @brief Run the hooks of @p stage in order, but for those by parts at its head, which
+ *  pw_schedule_run_part() has run. @return the first status that is not PW_OK. */
 pw_status pw_schedule_run(pw_sim *sim, pw_stage stage);
 
-/** @brief Run one thread's part of those of stages WEIGHT and MOTION. */
+/** @brief Run one thread's part of the hooks by parts at the head of @p stage, in order. */
 void pw_schedule_run_part(const pw_sim *sim, pw_stage stage, int part, int parts);
 
 /** @brief Hooks of @p stage. */

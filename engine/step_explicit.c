@@ -22,17 +22,21 @@ static void lap(pw_sim *sim, pw_timer stage, double *since)
   *since = now;
 }
 
-/* No radial motion on the axis of symmetry: nodes at r = 0, slot and, at the same time, v(n). */
-static void axis_condition(pw_sim *sim, int slot)
+/* No radial motion on the axis of symmetry: nodes at r = 0 of a part of the records, the slot of
+ * the stage and, at the same time, v(n). */
+static void axis_condition(pw_sim *sim, int part, int parts)
 {
+  const int slot = sim->node_slot;
+  pw_idx first, last;
   if (sim->scene.geometry != PW_AXI || sim->mesh.origin[0] > 0.0) {
     return;
   }
+  pw_nodes_part(&sim->nodes, part, parts, &first, &last);
   for (int f = 0; f < sim->nodes.nfield; f++) {
     pw_real *rec = pw_nodes_field(&sim->nodes, f);
     for (pw_idx j = 0; j < sim->mesh.nodes[1]; j++) {
       const pw_idx node = j * sim->mesh.nodes[0];
-      if (!pw_nodes_in_use(&sim->nodes, f, node)) {
+      if (!pw_nodes_in_part(&sim->nodes, f, node, first, last)) {
         continue;
       }
       pw_real *r = rec + (pw_off)node * PW_NODE;
@@ -42,11 +46,11 @@ static void axis_condition(pw_sim *sim, int slot)
   }
 }
 
-static pw_status constrain(pw_sim *sim, pw_stage stage, int slot)
+/* Constraints of a part of the records, whose velocities have just been made. */
+static void constrain_part(pw_sim *sim, pw_stage stage, int part, int parts)
 {
-  sim->node_slot = slot;
-  axis_condition(sim, slot);
-  return pw_schedule_run(sim, stage);
+  axis_condition(sim, part, parts);
+  pw_schedule_run_part(sim, stage, part, parts);
 }
 
 /* F-bar: the stress that scatters read. */
@@ -86,7 +90,9 @@ static void increment_nodes(void *ctx, int part, int parts)
 
 static void remap_nodes(void *ctx, int part, int parts)
 {
-  pw_nodes_remap_part(&((pw_sim *)ctx)->nodes, part, parts);
+  pw_sim *sim = ctx;
+  pw_nodes_remap_part(&sim->nodes, part, parts);
+  constrain_part(sim, PW_STAGE_REMAP, part, parts);
 }
 
 static void weigh_nodes(void *ctx, int part, int parts)
@@ -98,6 +104,7 @@ static void new_velocities(void *ctx, int part, int parts)
 {
   pw_sim *sim = ctx;
   pw_nodes_momentum_part(&sim->nodes, sim->dt, sim->mass_cut_off, part, parts);
+  constrain_part(sim, PW_STAGE_CONSTRAINT, part, parts);
 }
 
 static void weigh_and_move(void *ctx, int part, int parts)
@@ -110,6 +117,7 @@ static void start_velocities(void *ctx, int part, int parts)
 {
   pw_sim *sim = ctx;
   pw_nodes_momentum_part(&sim->nodes, 0.0, sim->mass_cut_off, part, parts);
+  constrain_part(sim, PW_STAGE_REMAP, part, parts);
 }
 
 /* Scatter onto cleared nodes. */
@@ -123,6 +131,7 @@ static void scatter(pw_sim *sim, pw_block_fn block)
 /* Forces to new velocities of the nodes; when nothing else needs the sum of the forces, in one go. */
 static pw_status move_nodes(pw_sim *sim)
 {
+  sim->node_slot = PW_NODE_VEL;
   if (pw_schedule_count(sim, PW_STAGE_NODE_TOTAL) == 0 && !pw_pairs_on(sim)) {
     pw_for_parts(sim->threads, weigh_and_move, sim);
     return PW_OK;
@@ -147,7 +156,7 @@ static pw_status grid_velocity(pw_sim *sim, double *clock)
   lap(sim, PW_TIMER_EFFECTS, clock);
   PW_TRY(move_nodes(sim));
   lap(sim, PW_TIMER_NODES, clock);
-  PW_TRY(constrain(sim, PW_STAGE_CONSTRAINT, PW_NODE_VEL));
+  PW_TRY(pw_schedule_run(sim, PW_STAGE_CONSTRAINT));
   lap(sim, PW_TIMER_EFFECTS, clock);
   if (pw_pairs_on(sim)) { /* velocities at the end and at the start of the step */
     pw_pairs_spread(sim, PW_NODE_VEL, 4);
@@ -180,8 +189,9 @@ static pw_status stress_first(pw_sim *sim, double *clock)
 {
   scatter(sim, pw_block_p2g_momentum);
   PW_TRY(pw_schedule_run(sim, PW_STAGE_P2G));
+  sim->node_slot = PW_NODE_VEL;
   pw_for_parts(sim->threads, start_velocities, sim);
-  PW_TRY(constrain(sim, PW_STAGE_REMAP, PW_NODE_VEL));
+  PW_TRY(pw_schedule_run(sim, PW_STAGE_REMAP));
   lap(sim, PW_TIMER_P2G, clock);
   pw_update_pass pass = {sim, PW_NODE_VEL, false, true};
   update_points(sim, &pass);
@@ -198,6 +208,7 @@ static pw_status remap_velocity(pw_sim *sim, double *clock)
                         false};
   PW_TRY(pw_schedule_run(sim, PW_STAGE_REMAP_P2G));
   lap(sim, PW_TIMER_EFFECTS, clock);
+  sim->node_slot = PW_NODE_REMAP;
   pw_assemble_pass(pw_rates_ending(sim), sim->threads, &pass, sim);
   lap(sim, PW_TIMER_REMAP, clock);
   if (pairs) {
@@ -205,7 +216,7 @@ static pw_status remap_velocity(pw_sim *sim, double *clock)
     pw_for_parts(sim->threads, remap_nodes, sim);
     lap(sim, PW_TIMER_NODES, clock);
   }
-  PW_TRY(constrain(sim, PW_STAGE_REMAP, PW_NODE_REMAP));
+  PW_TRY(pw_schedule_run(sim, PW_STAGE_REMAP));
   lap(sim, PW_TIMER_EFFECTS, clock);
   if (pw_pairs_on(sim)) {
     pw_pairs_spread(sim, PW_NODE_REMAP, 2);

@@ -8,28 +8,74 @@
  */
 #include "partition/blocks.h"
 
-#include "engine/core/mem.h"
-#include "partition/share.h"
+#include <math.h>
 
-static const pw_real ENOUGH_FOR_2 = 1.95, ENOUGH_FOR_4 = 3.6;
+#include "engine/core/mem.h"
+
+/* Parts of 2 and 4 that a division reaches, barriers counted, beyond which no other is looked for. */
+static const pw_real ENOUGH = 0.95;
+
+/* By what a larger size has to be better: smaller blocks can be divided among more threads, and
+ * take longer steps where the method has several. */
+static const pw_real BETTER = 1.02;
 
 /* Sizes to try, in eighths of the nominal one. */
 static const pw_idx EIGHTHS[] = {8, 10, 12, 13, 14, 15, 16, 17, 18, 20, 24, 32};
 
 enum {
+  MOST_THREADS = 64,
   MAX_TRIED = 40000, /* elements; beyond, blocks are numerous enough for any size */
   /* Points scattered by one thread in the time that a colour costs beside its work. Measured on two
    * threads with 40 to 111 blocks in 5 to 8 colours: 2.5 to 4 microseconds, 70 to 110 points, where
    * the processors share a cache, and 9 to 13 where they do not. */
-  BARRIER = 60
+  BARRIER = 80
 };
 
-/* How a division does: bounds on 2 and 4 threads, and on 2 with the barriers counted. */
-typedef struct merit {
-  pw_real on_2, on_4, with_barriers;
-} merit;
+/* The blocks of a colour by falling size, each to the thread that has least: the longest. */
+static pw_off longest_share(const pw_blocks *b, pw_idx c, const pw_off *size, int threads,
+                            pw_idx *order)
+{
+  pw_off sum[MOST_THREADS] = {0}, longest = 0;
+  const pw_idx *list = b->colour_block + b->colour_start[c];
+  const pw_idx n = b->colour_start[c + 1] - b->colour_start[c];
+  for (pw_idx l = 0; l < n; l++) {
+    pw_idx at = l;
+    for (; at > 0 && size[order[at - 1]] < size[list[l]]; at--) {
+      order[at] = order[at - 1];
+    }
+    order[at] = list[l];
+  }
+  for (pw_idx l = 0; l < n; l++) {
+    int to = 0;
+    for (int t = 1; t < threads; t++) {
+      to = sum[t] < sum[to] ? t : to;
+    }
+    sum[to] += size[order[l]];
+    longest = sum[to] > longest ? sum[to] : longest;
+  }
+  return longest;
+}
 
-static pw_status rate(pw_blocks *b, const pw_idx *weight, merit *m)
+pw_status pw_blocks_bound(const pw_blocks *b, int threads, const pw_off *size, pw_real *bound)
+{
+  PW_REQUIRE(threads >= 1 && threads <= MOST_THREADS, PW_ERR_ARGUMENT, "a bound for %d threads",
+             threads);
+  pw_idx *order = NULL;
+  pw_off all = 0, longest = 0;
+  PW_TRY(pw_mem_alloc("blocks by size", b->nblock, sizeof *order, &order));
+  for (pw_idx k = 0; k < b->nblock; k++) {
+    all += size[k];
+  }
+  for (pw_idx c = 0; c < b->ncolour; c++) {
+    longest += longest_share(b, c, size, threads, order);
+  }
+  pw_mem_free(&order);
+  *bound = longest > 0 ? (pw_real)all / (pw_real)longest : 1.0;
+  return PW_OK;
+}
+
+/* Mean part of their number that 2 and 4 threads reach in the scatters, barriers counted. */
+static pw_status rate(const pw_blocks *b, const pw_idx *weight, pw_real *merit)
 {
   pw_off *size = NULL, all = 0;
   PW_TRY(pw_mem_alloc("block sizes", b->nblock, sizeof *size, &size));
@@ -37,28 +83,17 @@ static pw_status rate(pw_blocks *b, const pw_idx *weight, merit *m)
     size[b->elem_block[e]] += weight ? weight[e] : 1;
     all += weight ? weight[e] : 1;
   }
-  pw_status s = pw_share_plan(b, 2, size, &m->on_2);
-  if (s == PW_OK) {
-    s = pw_share_plan(b, 4, size, &m->on_4);
-    m->with_barriers = (pw_real)all / ((pw_real)all / m->on_2 + (pw_real)(BARRIER * b->ncolour));
+  pw_status s = PW_OK;
+  *merit = 1.0;
+  for (int threads = 2; threads <= 4 && s == PW_OK && all > 0; threads += 2) {
+    pw_real bound = 1.0;
+    s = pw_blocks_bound(b, threads, size, &bound);
+    const pw_real time = (pw_real)all / bound + (pw_real)(BARRIER * b->ncolour);
+    *merit *= (pw_real)all / time / threads;
   }
+  *merit = sqrt(*merit);
   pw_mem_free(&size);
   return s;
-}
-
-static bool is_even(const merit *m)
-{
-  return m->on_2 >= ENOUGH_FOR_2 && m->on_4 >= ENOUGH_FOR_4;
-}
-
-static bool is_enough(const merit *m)
-{
-  return is_even(m) && m->with_barriers >= 0.97 * m->on_2;
-}
-
-static bool is_better(const merit *m, const merit *best)
-{
-  return is_even(m) != is_even(best) ? is_even(m) : m->with_barriers > best->with_barriers;
 }
 
 pw_status pw_blocks_create_even(const pw_idx *cells, const pw_idx *weight, pw_idx reach, int nbody,
@@ -67,22 +102,20 @@ pw_status pw_blocks_create_even(const pw_idx *cells, const pw_idx *weight, pw_id
   const pw_idx nominal = pw_blocks_choose_size(cells[0] * cells[1], 0);
   const int tries = cells[0] * cells[1] > MAX_TRIED ? 1 : (int)(sizeof EIGHTHS / sizeof *EIGHTHS);
   pw_blocks best = {0};
-  merit best_merit = {0.0, 0.0, -1.0};
+  pw_real best_merit = -1.0;
   pw_status s = PW_OK;
-  bool enough = false;
-  for (int k = 0; k < tries && s == PW_OK && !enough; k++) {
+  for (int k = 0; k < tries && s == PW_OK && best_merit < ENOUGH; k++) {
     pw_blocks b = {0};
-    merit m = {0.0, 0.0, 0.0};
+    pw_real merit = 0.0;
     s = pw_blocks_create(cells, weight, (nominal * EIGHTHS[k] + 4) / 8, reach, nbody, &b);
     if (s == PW_OK) {
-      s = rate(&b, weight, &m);
+      s = rate(&b, weight, &merit);
     }
-    enough = s == PW_OK && is_enough(&m);
-    if (s == PW_OK && (enough || is_better(&m, &best_merit))) {
+    if (s == PW_OK && merit > BETTER * best_merit) {
       pw_blocks last = best;
       best = b;
       b = last;
-      best_merit = m;
+      best_merit = merit;
     }
     pw_blocks_destroy(&b);
   }

@@ -1,12 +1,55 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
+/*
+ * The blocks of a list are jobs, the threads machines on which a job costs more the farther it lies
+ * from the part of the grid that the thread holds. From the blocks of its part, each thread gives
+ * away or exchanges one at a time as long as the busiest one gains (local search by moves and
+ * exchanges): the block that evens out at the least cost is then one close to a border.
+ */
 #include "partition/share.h"
 
 #include <string.h>
 
 #include "engine/core/mem.h"
 
-/* The smallest blocks of a list, up to this part of its work, belong to nobody beforehand. */
+/* Blocks close to a border, up to this part of a list's work, belong to nobody beforehand. */
 static const pw_real TAIL = 0.1;
+
+/* Close to a border: in parts of a thread. */
+static const pw_real CLOSE = 0.25;
+
+/* What a block costs at most on a thread that does not hold its part, beside its work, and how far
+ * off that is, as a part of all blocks. The lines of its points and nodes then come from another
+ * processor's cache: measured on two threads, half to once the work of a scatter. */
+static const pw_real FAR_COST = 0.5, FAR = 0.25;
+
+enum { EXCHANGED = 64 /* blocks of a list; in longer ones moves alone even out well enough */ };
+
+/* Position of a block along the longer side of the grid, in elements; without a grid its number. */
+static pw_real position(const pw_blocks *b, pw_idx k)
+{
+  const pw_idx nx = b->cells[0], first = b->elem_start[k], n = b->elem_start[k + 1] - first;
+  pw_real sum = 0.0;
+  if (nx <= 0) {
+    return k;
+  }
+  for (pw_idx l = first; l < first + n; l++) {
+    sum += nx > b->cells[1] ? b->elem[l] % nx : b->elem[l] / nx;
+  }
+  return sum / (pw_real)n;
+}
+
+/* Lines the blocks up along the grid; share_place serves as scratch. */
+static void line_up(pw_blocks *b)
+{
+  for (pw_idx k = 0; k < b->nblock; k++) {
+    pw_idx at = k;
+    b->share_place[k] = b->elem_start ? position(b, k) : k;
+    for (; at > 0 && b->share_place[b->share_line[at - 1]] > b->share_place[k]; at--) {
+      b->share_line[at] = b->share_line[at - 1];
+    }
+    b->share_line[at] = k;
+  }
+}
 
 pw_status pw_share_create(pw_blocks *b, int threads)
 {
@@ -19,10 +62,13 @@ pw_status pw_share_create(pw_blocks *b, int threads)
                       &b->share_block));
   PW_TRY(pw_mem_alloc("shares: sizes", b->nblock, sizeof *b->share_size, &b->share_size));
   PW_TRY(pw_mem_alloc("shares: work", b->nblock, sizeof *b->share_work, &b->share_work));
-  PW_TRY(pw_mem_alloc("shares: homes", b->nblock, sizeof *b->share_home, &b->share_home));
+  PW_TRY(pw_mem_alloc("shares: line", b->nblock, sizeof *b->share_line, &b->share_line));
+  PW_TRY(pw_mem_alloc("shares: places", b->nblock, sizeof *b->share_place, &b->share_place));
   PW_TRY(pw_mem_alloc("shares: owners", b->nblock, sizeof *b->share_owner, &b->share_owner));
   PW_TRY(pw_mem_alloc("shares: order", b->nblock, sizeof *b->share_order, &b->share_order));
-  return pw_mem_alloc("shares: loads", b->share_room, sizeof *b->share_load, &b->share_load);
+  PW_TRY(pw_mem_alloc("shares: sums", b->share_room, sizeof *b->share_sum, &b->share_sum));
+  line_up(b);
+  return PW_OK;
 }
 
 void pw_share_destroy(pw_blocks *b)
@@ -31,31 +77,56 @@ void pw_share_destroy(pw_blocks *b)
   pw_mem_free(&b->share_block);
   pw_mem_free(&b->share_size);
   pw_mem_free(&b->share_work);
-  pw_mem_free(&b->share_home);
+  pw_mem_free(&b->share_line);
+  pw_mem_free(&b->share_place);
   pw_mem_free(&b->share_owner);
   pw_mem_free(&b->share_order);
-  pw_mem_free(&b->share_load);
+  pw_mem_free(&b->share_sum);
   b->nthread = b->share_room = 0;
 }
 
-/* Blocks of a list in its order (rows of the grid, upwards) cut into parts of equal size. */
-static void set_homes(pw_blocks *b, const pw_idx *list, pw_idx n)
+/* Where each block lies among the threads, from the end of the line: those between t and t + 1, a
+ * part of the grid with an even part of the work, are thread t's to begin with, in all passes. */
+static void set_places(pw_blocks *b)
 {
   pw_off all = 0, before = 0;
-  for (pw_idx l = 0; l < n; l++) {
-    all += b->share_size[list[l]];
+  for (pw_idx k = 0; k < b->nblock; k++) {
+    all += b->share_work[k];
   }
-  for (pw_idx l = 0; l < n; l++) {
-    const pw_idx k = list[l];
-    pw_off middle = 2 * before + b->share_size[k];
-    pw_idx t = all > 0 ? (pw_idx)((pw_real)middle / (pw_real)(2 * all) * b->share_room) : 0;
-    b->share_home[k] = t < b->share_room ? t : b->share_room - 1;
-    before += b->share_size[k];
+  const pw_real each = all > 0 ? (pw_real)all / b->share_room : 1.0;
+  for (pw_idx l = b->nblock - 1; l >= 0; l--) {
+    const pw_idx k = b->share_line[l];
+    b->share_place[k] = ((pw_real)before + 0.5 * (pw_real)b->share_work[k]) / each;
+    before += b->share_work[k];
   }
 }
 
-/* Blocks of a list that hold something, by falling load; equal ones in their order. */
-static pw_idx order_list(pw_blocks *b, const pw_idx *list, pw_idx n, const pw_off *load)
+static pw_idx home(const pw_blocks *b, pw_idx k)
+{
+  const pw_idx t = (pw_idx)b->share_place[k];
+  return t < b->share_room ? t : b->share_room - 1;
+}
+
+/* How far a block lies from the nearest border between two threads, in parts. */
+static pw_real from_border(const pw_blocks *b, pw_idx k)
+{
+  const pw_real place = b->share_place[k];
+  pw_idx border = (pw_idx)(place + 0.5);
+  border = border < 1 ? 1 : border < b->share_room ? border : b->share_room - 1;
+  return place > border ? place - border : border - place;
+}
+
+/* What a block costs thread t. */
+static pw_real cost(const pw_blocks *b, pw_idx k, pw_off load, pw_idx t, pw_real far_cost)
+{
+  const pw_real place = b->share_place[k];
+  const pw_real outside = place < t ? t - place : place > t + 1 ? place - (t + 1) : 0.0;
+  const pw_real far = outside / (FAR * b->share_room);
+  return (pw_real)load * (1.0 + far_cost * (far < 1.0 ? far : 1.0));
+}
+
+/* Blocks of a list that hold something, the closest to a border last. */
+static pw_idx order_list(pw_blocks *b, const pw_idx *list, pw_idx n)
 {
   pw_idx *order = b->share_order, held = 0;
   for (pw_idx l = 0; l < n; l++) {
@@ -64,7 +135,7 @@ static pw_idx order_list(pw_blocks *b, const pw_idx *list, pw_idx n, const pw_of
     if (b->share_size[k] <= 0) {
       continue;
     }
-    for (; at > 0 && load[order[at - 1]] < load[k]; at--) {
+    for (; at > 0 && from_border(b, order[at - 1]) < from_border(b, k); at--) {
       order[at] = order[at - 1];
     }
     order[at] = k;
@@ -73,7 +144,7 @@ static pw_idx order_list(pw_blocks *b, const pw_idx *list, pw_idx n, const pw_of
   return held;
 }
 
-static pw_idx least(const pw_off *sum, pw_idx n)
+static pw_idx least(const pw_real *sum, pw_idx n)
 {
   pw_idx best = 0;
   for (pw_idx t = 1; t < n; t++) {
@@ -82,7 +153,7 @@ static pw_idx least(const pw_off *sum, pw_idx n)
   return best;
 }
 
-static pw_idx most(const pw_off *sum, pw_idx n)
+static pw_idx most(const pw_real *sum, pw_idx n)
 {
   pw_idx best = 0;
   for (pw_idx t = 1; t < n; t++) {
@@ -91,60 +162,138 @@ static pw_idx most(const pw_off *sum, pw_idx n)
   return best;
 }
 
-/* The block of thread t whose move to another, by `gap` less busy, evens them out best; or -1. */
-static pw_idx best_move(const pw_blocks *b, pw_idx given, const pw_off *load, pw_idx t, pw_off gap)
+/* A list whose first `held` blocks of share_order have owners. */
+typedef struct jobs {
+  pw_idx held;
+  const pw_off *load;
+  pw_real far_cost;
+} jobs;
+
+/* Block `give` goes to thread `to`, `take` (or none, -1) comes back; what both then have to do. */
+typedef struct deal {
+  pw_idx give, take, to;
+  pw_real from_sum, to_sum;
+} deal;
+
+static pw_real longer(const deal *d)
 {
-  pw_idx best = -1;
-  pw_off gain = 0;
-  for (pw_idx i = 0; i < given; i++) {
+  return d->from_sum > d->to_sum ? d->from_sum : d->to_sum;
+}
+
+static void consider(const pw_blocks *b, const jobs *j, pw_idx give, pw_idx take, pw_idx to,
+                     deal *best)
+{
+  const pw_idx from = b->share_owner[give];
+  const pw_off *load = j->load;
+  deal d = {give, take, to, b->share_sum[from], b->share_sum[to]};
+  d.from_sum -= cost(b, give, load[give], from, j->far_cost);
+  d.to_sum += cost(b, give, load[give], to, j->far_cost);
+  if (take >= 0) {
+    d.from_sum += cost(b, take, load[take], from, j->far_cost);
+    d.to_sum -= cost(b, take, load[take], to, j->far_cost);
+  }
+  if (longer(&d) < longer(best) * (1.0 - 1e-9)) {
+    *best = d;
+  }
+}
+
+/* The move or exchange from the busiest thread that leaves the shorter of two; give is -1 when none
+ * is shorter than now. */
+static deal best_deal(const pw_blocks *b, const jobs *j, pw_idx busiest)
+{
+  deal best = {-1, -1, -1, b->share_sum[busiest], 0.0};
+  for (pw_idx i = 0; i < j->held; i++) {
     const pw_idx k = b->share_order[i];
-    const pw_off rest = gap - load[k], less = rest < load[k] ? rest : load[k];
-    if (b->share_owner[k] == t && less > gain) {
-      best = k;
-      gain = less;
+    if (b->share_owner[k] != busiest) {
+      continue;
+    }
+    for (pw_idx t = 0; t < b->share_room; t++) {
+      if (t != busiest) {
+        consider(b, j, k, -1, t, &best);
+      }
+    }
+    for (pw_idx o = 0; o < j->held && j->held <= EXCHANGED; o++) {
+      const pw_idx other = b->share_order[o];
+      if (b->share_owner[other] != busiest) {
+        consider(b, j, k, other, b->share_owner[other], &best);
+      }
     }
   }
   return best;
 }
 
-/* Moves from the busiest thread to the least busy one, while they differ by more than the tail can
- * even out: a block among those of another thread has all its nodes in the wrong cache. Every move
- * lessens the sum of squares. */
-static void even_out(pw_blocks *b, pw_idx given, const pw_off *load, pw_off tail)
+/* Every deal makes the busiest thread less busy, or one of several equally busy ones, so the search
+ * ends; it stops early once no thread has more than an even part of `all`, tail included. */
+static void even_out(pw_blocks *b, const jobs *j, pw_off all)
 {
-  const pw_idx nt = b->share_room;
-  pw_off *sum = b->share_load;
-  for (pw_idx k = 0; k >= 0;) {
-    const pw_idx from = most(sum, nt), to = least(sum, nt);
-    const pw_off gap = sum[from] - sum[to];
-    k = gap * (nt - 1) > tail ? best_move(b, given, load, from, gap) : -1;
-    if (k >= 0) {
-      b->share_owner[k] = to;
-      sum[from] -= load[k];
-      sum[to] += load[k];
+  pw_real *sum = b->share_sum;
+  memset(sum, 0, (size_t)b->share_room * sizeof *sum);
+  for (pw_idx i = 0; i < j->held; i++) {
+    const pw_idx k = b->share_order[i], t = b->share_owner[k];
+    sum[t] += cost(b, k, j->load[k], t, j->far_cost);
+  }
+  for (;;) {
+    const pw_idx from = most(sum, b->share_room);
+    const deal d = best_deal(b, j, from);
+    if (d.give < 0 || sum[from] * b->share_room <= (pw_real)all) {
+      return;
     }
+    b->share_owner[d.give] = d.to;
+    if (d.take >= 0) {
+      b->share_owner[d.take] = from;
+    }
+    sum[from] = d.from_sum;
+    sum[d.to] = d.to_sum;
   }
 }
 
-/* Owner of each of the first blocks in falling order; returns how many. */
+/* Puts block i of the order at the front of the tail that begins at `tail`, then behind larger ones. */
+static void put_in_tail(pw_blocks *b, pw_idx i, pw_idx tail, pw_idx held, const pw_off *load)
+{
+  pw_idx *order = b->share_order, at = i;
+  const pw_idx k = order[i];
+  for (; at + 1 < held && (at + 1 < tail || load[order[at + 1]] > load[k]); at++) {
+    order[at] = order[at + 1];
+  }
+  order[at] = k;
+}
+
+/* What the busiest thread has to do, however far off. */
+static pw_real longest(pw_blocks *b, pw_idx owned, const pw_off *load)
+{
+  memset(b->share_sum, 0, (size_t)b->share_room * sizeof *b->share_sum);
+  for (pw_idx i = 0; i < owned; i++) {
+    const pw_idx k = b->share_order[i];
+    b->share_sum[b->share_owner[k]] += (pw_real)load[k];
+  }
+  return b->share_sum[most(b->share_sum, b->share_room)];
+}
+
+/* Owners of all blocks but the tail; how many have one. */
 static pw_idx give_out(pw_blocks *b, pw_idx held, const pw_off *load)
 {
-  const pw_idx nt = b->share_room;
-  pw_off *sum = b->share_load, all = 0, given = 0;
-  pw_idx i = 0;
-  memset(sum, 0, (size_t)nt * sizeof *sum);
-  for (pw_idx l = 0; l < held; l++) {
-    all += load[b->share_order[l]];
+  pw_off all = 0, tail = 0, largest = 0;
+  pw_idx owned = held;
+  for (pw_idx i = 0; i < held; i++) {
+    const pw_off l = load[b->share_order[i]];
+    all += l;
+    largest = l > largest ? l : largest;
   }
-  const pw_off enough = nt > 1 ? all - (pw_off)(TAIL * (pw_real)all) : all;
-  for (; i < held && given < enough; i++) {
-    pw_idx k = b->share_order[i];
-    b->share_owner[k] = b->share_home[k];
-    sum[b->share_home[k]] += load[k];
-    given += load[k];
+  const pw_off room = b->share_room > 1 ? (pw_off)(TAIL * (pw_real)all) : -1;
+  for (pw_idx i = held - 1; i >= 0; i--) {
+    const pw_idx k = b->share_order[i];
+    if (tail + load[k] <= room && from_border(b, k) < CLOSE) {
+      tail += load[k];
+      put_in_tail(b, i, owned--, held, load);
+    } else {
+      b->share_owner[k] = home(b, k);
+    }
   }
-  even_out(b, i, load, all - given);
-  return i;
+  even_out(b, &(jobs){owned, load, FAR_COST}, all);
+  if (longest(b, owned, load) > (pw_real)all / b->share_room + (pw_real)largest) {
+    even_out(b, &(jobs){owned, load, 0.0}, all); /* however far the ways, not more than that */
+  }
+  return owned;
 }
 
 /* Shares of a list of blocks (NULL: all), each in the order of the list, then its tail in falling
@@ -152,7 +301,7 @@ static pw_idx give_out(pw_blocks *b, pw_idx held, const pw_off *load)
 static pw_idx divide(pw_blocks *b, const pw_idx *list, pw_idx n, const pw_off *load, pw_idx *start,
                      pw_idx at)
 {
-  const pw_idx nt = b->share_room, held = order_list(b, list, n, load);
+  const pw_idx nt = b->share_room, held = order_list(b, list, n);
   const pw_idx given = give_out(b, held, load);
   for (pw_idx t = 0; t < nt; t++) {
     start[t] = at;
@@ -174,15 +323,10 @@ void pw_share_balance(pw_blocks *b)
 {
   const pw_idx row = b->share_room + 1;
   pw_idx at = 0;
+  set_places(b);
   for (pw_idx c = 0; c < b->ncolour; c++) {
     const pw_idx first = b->colour_start[c], n = b->colour_start[c + 1] - first;
-    const pw_idx *list = b->colour_block + first;
-    set_homes(b, list, n);
-    at = divide(b, list, n, b->share_size, b->share_start + (pw_off)c * row, at);
-    for (pw_idx l = 0; l < n; l++) { /* its points stay with the thread when all blocks are run */
-      const pw_idx k = list[l];
-      b->share_home[k] = b->share_owner[k] >= 0 ? b->share_owner[k] : b->share_home[k];
-    }
+    at = divide(b, b->colour_block + first, n, b->share_size, b->share_start + (pw_off)c * row, at);
   }
   at = divide(b, NULL, b->nblock, b->share_work, b->share_start + (pw_off)b->ncolour * row, at);
   b->share_start[((pw_off)b->ncolour + 1) * row] = at;
@@ -194,21 +338,20 @@ void pw_share_balance(pw_blocks *b)
 static pw_off share_loads(const pw_blocks *b, pw_idx c, const pw_off *load, pw_off *all)
 {
   const pw_idx nt = b->nthread, *start = b->share_start + (pw_off)c * (nt + 1);
-  pw_off *sum = b->share_load, longest = 0;
+  pw_real *sum = b->share_sum; /* whole numbers */
   for (pw_idx t = 0; t < nt; t++) {
-    sum[t] = 0;
+    sum[t] = 0.0;
     for (pw_idx k = start[t]; k < start[t + 1]; k++) {
-      sum[t] += load[b->share_block[k]];
+      sum[t] += (pw_real)load[b->share_block[k]];
     }
   }
   for (pw_idx k = start[nt]; k < start[nt + 1]; k++) {
-    sum[least(sum, nt)] += load[b->share_block[k]];
+    sum[least(sum, nt)] += (pw_real)load[b->share_block[k]];
   }
   for (pw_idx t = 0; t < nt; t++) {
-    *all += sum[t];
-    longest = sum[t] > longest ? sum[t] : longest;
+    *all += (pw_off)sum[t];
   }
-  return longest;
+  return (pw_off)sum[most(sum, nt)];
 }
 
 /* The same when every thread gets an equal number of blocks. */
@@ -249,18 +392,4 @@ void pw_share_bound(const pw_blocks *b, int threads, pw_real *coloured, pw_real 
   }
   *coloured = longest > 0 ? (pw_real)size / (pw_real)longest : 1.0;
   *plain = part > 0 ? (pw_real)work / (pw_real)part : 1.0;
-}
-
-pw_status pw_share_plan(pw_blocks *b, int threads, const pw_off *size, pw_real *coloured)
-{
-  pw_real plain;
-  pw_status s = pw_share_create(b, threads);
-  if (s == PW_OK) {
-    memcpy(b->share_size, size, (size_t)b->nblock * sizeof *size);
-    memcpy(b->share_work, size, (size_t)b->nblock * sizeof *size);
-    pw_share_balance(b);
-    pw_share_bound(b, threads, coloured, &plain);
-  }
-  pw_share_destroy(b);
-  return s;
 }

@@ -14,7 +14,7 @@
 #include "partition/blocks.h"
 
 /**
- * @brief Memory for a division of @p b among @p threads, freed by pw_blocks_destroy().
+ * @brief Memory for a division of @p b, whose elements and colours are set, among @p threads, freed by pw_blocks_destroy().
  *
  * Until pw_share_balance() is called there is no division (b->nthread is 0).
  * @return PW_OK; PW_ERR_MEMORY.
@@ -28,15 +28,17 @@ void pw_share_destroy(pw_blocks *b);
  * @brief Divide each colour by b->share_size and all blocks by b->share_work, which the caller has
  *        set; blocks of size 0 belong to nobody and are left out.
  *
- * The blocks of a colour in their order, cut into parts of equal size, give each a thread to begin
- * with; among all blocks it begins with the thread of its colour. So threads hold regions of the
- * grid, and points and nodes stay in the cache of one processor from pass to pass: a line that
- * comes from another takes 40 ns where two share a cache and 225 where they do not (measured). Then
- * blocks move from the busiest thread to the least busy as long as that evens them out, which
- * leaves no thread more than the mean and one block, the bound of any list schedule (Graham 1969,
- * "Bounds on multiprocessing timing anomalies"). With several threads the smallest blocks of each
- * list, a tenth of its work, are left to whoever is free first: a processor that is taken away for
- * a while, or a block that costs more than counted, then holds up the others less. Allocates
+ * The blocks in their order along the longer side of the grid, cut into parts of equal work, give
+ * each a thread to begin with, the same in all lists; thread 0 gets the last part, the top of the
+ * grid or its right, because it also runs what is not divided, and that is mostly at piles. So threads hold regions of the grid, and points
+ * and nodes stay in the cache of one processor from pass to pass: a line that comes from another
+ * takes 40 ns where two share a cache and 225 where they do not (measured). Then blocks are moved and
+ * exchanged as long as that relieves the busiest thread, a block costing more the farther it lies
+ * from its thread's part (share.c), which leaves no thread more than the mean and one block, the
+ * bound of any list schedule (Graham 1969, "Bounds on multiprocessing timing anomalies"). With
+ * several threads some blocks close to the borders, a tenth of a list's work at most, are left to
+ * whoever is free first: a processor that is taken away for a while, or a block that costs more than
+ * counted, then holds up the others less, and what changes hands lies at the border. Allocates
  * nothing.
  */
 void pw_share_balance(pw_blocks *b);
@@ -48,12 +50,5 @@ void pw_share_balance(pw_blocks *b);
  * @param[out] plain    sum of work / the largest share
  */
 void pw_share_bound(const pw_blocks *b, int threads, pw_real *coloured, pw_real *plain);
-
-/**
- * @brief The bound on coloured passes that blocks without a division would have on @p threads.
- * @param[in] size [nblock] work of each block; @p b has no division before and after
- * @return PW_OK; PW_ERR_MEMORY.
- */
-pw_status pw_share_plan(pw_blocks *b, int threads, const pw_off *size, pw_real *coloured);
 
 #endif /* PW_PARTITION_SHARE_H */

@@ -49,7 +49,7 @@ static void elastic_column(void **state)
   assert_hooks(sim, "node_force: gravity\nweight: gravity\n"
                     "constraint: boundary\n"
                     "remap: boundary\n"
-                    "motion: gravity\nend: gravity\n");
+                    "motion: gravity\nend: gravity\nend: boundary\n");
   assert_fields(sim, "id body home x v mass vol def_grad stress corner local");
   assert_int_equal(sim->nodes.nfield, 1);
   assert_null(sim->limit);
@@ -78,11 +78,12 @@ static void biaxial_test(void **state)
   i->kind = PW_STRESS_UNIFORM;
   i->stress_xx_pa = i->stress_yy_pa = i->stress_zz_pa = -1e5;
   pw_sim *sim = test_sim(&s, 1);
-  assert_hooks(sim, "p2g: initial_stress\n"
-                    "node_force: surcharge\n"
-                    "constraint: boundary\nconstraint: boundary\nconstraint: boundary\n"
-                    "remap: boundary\nremap: boundary\nremap: boundary\n"
-                    "end: initial_stress\nend: surcharge\n");
+  assert_hooks(
+      sim, "p2g: initial_stress\n"
+           "node_force: surcharge\n"
+           "constraint: boundary\nconstraint: boundary\nconstraint: boundary\n"
+           "remap: boundary\nremap: boundary\nremap: boundary\n"
+           "end: initial_stress\nend: surcharge\nend: boundary\nend: boundary\nend: boundary\n");
   assert_fields(sim, "id body home x v mass vol def_grad stress state half0 half corner local");
   assert_int_equal(sim->points.nstate, 1); /* the void ratio: intergranular strain is off */
   assert_int_equal(sim->nodes.nfield, 1);
@@ -104,7 +105,8 @@ static void hammered_pile(void **state)
                     "remap_p2g: contact_penalty\n"
                     "remap: boundary\nremap: boundary\n"
                     "motion: gravity\nmesh: contact_penalty\n"
-                    "end: initial_stress\nend: gravity\nend: hammer\nend: pile_record\n");
+                    "end: initial_stress\nend: gravity\nend: hammer\nend: boundary\nend: "
+                    "boundary\nend: pile_record\n");
   assert_fields(sim, "id body home x v mass vol def_grad stress state half0 half corner local");
   assert_int_equal(sim->points.nstate, 8); /* void ratio, intergranular strain, substep */
   assert_int_equal(sim->nodes.nfield, 2);

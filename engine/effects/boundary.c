@@ -44,7 +44,8 @@ typedef struct boundary {
   pw_real velocity[2];
   pw_real reaction[2]; /* on the bodies, mean over the last step, whole body; N */
   pw_idx n;
-  pw_idx *node; /* [n] ascending */
+  pw_idx *node;    /* [n] ascending */
+  pw_real *gained; /* [nfield][n][2] momentum that each node is kept from gaining; kg m/s */
 } boundary;
 
 static pw_status check(const pw_scene *scene, const void *param)
@@ -115,47 +116,68 @@ static pw_status check_hanging(const boundary *c, const pw_mesh *m)
   return PW_OK;
 }
 
-static pw_status hold(pw_sim *sim, void *ctx)
+/* The nodes held among a part of the records. */
+static void hold(const pw_sim *sim, void *ctx, int part, int parts)
 {
-  boundary *c = ctx;
+  const boundary *c = ctx;
   int first, last;
-  pw_real gained[2] = {0.0, 0.0};
+  pw_idx from, to;
   pw_effect_fields(sim, c->param->body, &first, &last);
+  pw_nodes_part(&sim->nodes, part, parts, &from, &to);
   for (int f = first; f < last; f++) {
-    pw_real *rec = pw_nodes_field(&sim->nodes, f);
+    pw_real *rec = pw_nodes_field(&sim->nodes, f), *gained = c->gained + 2 * (pw_off)f * c->n;
     for (pw_idx k = 0; k < c->n; k++) {
       pw_real *r = rec + (pw_off)c->node[k] * PW_NODE;
-      if (!pw_nodes_in_use(&sim->nodes, f, c->node[k])) {
+      if (!pw_nodes_in_part(&sim->nodes, f, c->node[k], from, to)) {
         continue;
       }
       for (int a = 0; a < 2; a++) {
         if (c->fix[a]) {
-          gained[a] += r[PW_NODE_MASS] * (r[PW_NODE_VEL + a] - r[PW_NODE_FORCE + a]);
+          gained[2 * k + a] = r[PW_NODE_MASS] * (r[PW_NODE_VEL + a] - r[PW_NODE_FORCE + a]);
           r[PW_NODE_VEL + a] = r[PW_NODE_FORCE + a] = c->velocity[a];
         }
       }
     }
   }
-  for (int a = 0; a < 2; a++) {
-    c->reaction[a] = -sim->measure * gained[a] / sim->dt;
-    sim->energy.external += c->reaction[a] * c->velocity[a] * sim->dt;
-  }
-  return PW_OK;
 }
 
-static pw_status hold_remapped(pw_sim *sim, void *ctx)
+static void hold_remapped(const pw_sim *sim, void *ctx, int part, int parts)
 {
   const boundary *c = ctx;
   int first, last;
+  pw_idx from, to;
   pw_effect_fields(sim, c->param->body, &first, &last);
+  pw_nodes_part(&sim->nodes, part, parts, &from, &to);
   for (int f = first; f < last; f++) {
     pw_real *rec = pw_nodes_field(&sim->nodes, f) + sim->node_slot;
     for (pw_idx k = 0; k < c->n; k++) {
       pw_real *v = rec + (pw_off)c->node[k] * PW_NODE;
-      for (int a = 0; a < 2 && pw_nodes_in_use(&sim->nodes, f, c->node[k]); a++) {
+      for (int a = 0; a < 2 && pw_nodes_in_part(&sim->nodes, f, c->node[k], from, to); a++) {
         v[a] = c->fix[a] ? c->velocity[a] : v[a];
       }
     }
+  }
+}
+
+/* Summed in the order of fields and nodes, whoever held them. */
+static pw_status sum_reaction(pw_sim *sim, void *ctx)
+{
+  boundary *c = ctx;
+  int first, last;
+  pw_real sum[2] = {0.0, 0.0};
+  pw_effect_fields(sim, c->param->body, &first, &last);
+  for (int f = first; f < last; f++) {
+    for (pw_idx k = 0; k < c->n; k++) {
+      pw_real *gained = c->gained + 2 * ((pw_off)f * c->n + k);
+      for (int a = 0; a < 2; a++) {
+        sum[a] += gained[a];
+        gained[a] = 0.0; /* the record may be out of use in the next step */
+      }
+    }
+  }
+  for (int a = 0; a < 2; a++) {
+    c->reaction[a] = -sim->measure * sum[a] / sim->dt;
+    sim->energy.external += c->reaction[a] * c->velocity[a] * sim->dt;
   }
   return PW_OK;
 }
@@ -214,6 +236,7 @@ static void destroy(void **ctx)
   boundary *c = *ctx;
   if (c) {
     pw_mem_free(&c->node);
+    pw_mem_free(&c->gained);
   }
   pw_mem_free(ctx);
 }
@@ -234,12 +257,19 @@ static pw_status create(pw_sim *sim, const void *param, void **ctx)
   PW_REQUIRE(c->n > 0, PW_ERR_SCENE, "boundary %d holds no node of the grid", c->instance);
   PW_TRY(pw_mem_alloc("boundary nodes", c->n, sizeof(pw_idx), &c->node));
   collect(c, &sim->mesh);
+  PW_TRY(pw_mem_alloc("boundary: momenta", 2 * (pw_off)sim->nodes.nfield * c->n, sizeof(pw_real),
+                      &c->gained));
   return check_hanging(c, &sim->mesh);
 }
 
-static const pw_hook hooks[] = {
+static const pw_part_hook part_hooks[] = {
     {PW_STAGE_CONSTRAINT, hold},
     {PW_STAGE_REMAP, hold_remapped},
+    {0, NULL},
+};
+
+static const pw_hook hooks[] = {
+    {PW_STAGE_END, sum_reaction},
     {0, NULL},
 };
 
@@ -255,6 +285,7 @@ const pw_effect pw_effect_boundary = {
     .many = true,
     .keys = keys,
     .hooks = hooks,
+    .part_hooks = part_hooks,
     .implicit = implicit_hooks,
     .check = check,
     .create = create,

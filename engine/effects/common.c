@@ -59,16 +59,32 @@ static pw_off chunks_of(const pw_sim *sim, const int field[2])
   return ((pw_off)(field[1] - field[0]) * sim->nodes.nnode + CHUNK - 1) / CHUNK;
 }
 
-/* Chunks in turns: those in use are seldom spread evenly. */
+/* Whether a chunk of records belongs to part `thread`, which has just made the velocities of the
+ * first group in use in it; one without any belongs to part 0. */
+static bool owns(const pw_nodes *nodes, pw_off from, pw_off to, int thread, int threads)
+{
+  pw_idx first, last;
+  pw_nodes_part(nodes, thread, threads, &first, &last);
+  for (pw_off g = from / PW_NODE_GROUP; g * PW_NODE_GROUP < to; g++) {
+    if (nodes->in_use[g]) {
+      return nodes->place[g] >= first && nodes->place[g] < last;
+    }
+  }
+  return thread == 0;
+}
+
 void pw_sum_nodes_part(pw_sum_fn fn, const void *ctx, const pw_sim *sim, const int field[2],
                        pw_real *part, int thread, int threads)
 {
   const pw_nodes *nodes = &sim->nodes;
   const pw_off first = (pw_off)field[0] * nodes->nnode, last = (pw_off)field[1] * nodes->nnode;
   const pw_off chunks = chunks_of(sim, field);
-  for (pw_off k = thread; k < chunks; k += threads) {
+  for (pw_off k = 0; k < chunks; k++) {
     const pw_off from = first + k * CHUNK, to = from + CHUNK < last ? from + CHUNK : last;
     pw_real sum[PW_SUMS] = {0.0};
+    if (!owns(nodes, from, to, thread, threads)) {
+      continue;
+    }
     sum_runs(fn, ctx, nodes, (const pw_off[]){from, to}, sum);
     for (int s = 0; s < PW_SUMS; s++) {
       part[k * PW_SUMS + s] = sum[s];
