@@ -53,9 +53,9 @@ pw_status pw_blocks_create(const pw_idx *cells, const pw_idx *weight, pw_idx per
                            pw_idx reach, int nbody, pw_blocks *out);
 
 /**
- * @brief The same with blocks of a size that can be divided evenly: the first of a few sizes around
- *        pw_blocks_choose_size() whose coloured passes are bounded by 1.95 on 2 threads and 3.6 on
- *        4 and lose little to barriers, or else the best of them for 2.
+ * @brief The same with blocks of a size that can be divided evenly: of a few sizes from
+ *        pw_blocks_choose_size() on the one whose coloured passes lose least on 2 and 4 threads
+ *        (pw_blocks_bound()), barriers counted; a larger one has to be better by 2 %.
  *
  * Counted from @p weight, never timed: the same on every machine and for any number of threads.
  */
