@@ -41,10 +41,10 @@ typedef struct pw_hook {
 } pw_hook; /**< a list ends with {0, NULL} */
 
 /** Work of one thread on part @p part of @p parts of the nodal records (pw_nodes_part), each by
- *  itself, in stages WEIGHT, CONSTRAINT, REMAP and MOTION of explicit steps: it runs within the loop
- *  over the records that the step makes anyway, as a pass on its own, or one thread that visits the
- *  records of the others, costs what the way between processors costs. In stages CONSTRAINT and
- *  REMAP only while no ordinary hook comes before; else in a loop of its own. */
+ *  itself unless velocities are final, in stages WEIGHT, CONSTRAINT, REMAP and MOTION of explicit
+ *  steps: it runs within the loop over the records that the step makes anyway, as a pass on its
+ *  own, or one thread that visits the records of the others, costs what the way between processors
+ *  costs. In CONSTRAINT and REMAP only while no ordinary hook comes before; else in a loop. */
 typedef void (*pw_part_hook_fn)(const pw_sim *sim, void *ctx, int part, int parts);
 typedef struct pw_part_hook {
   pw_stage stage;

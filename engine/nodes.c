@@ -70,7 +70,7 @@ void pw_nodes_use(pw_nodes *nodes, int f, pw_idx first, pw_idx n)
   }
 }
 
-/* The first part is the last of the grid, as with blocks (partition/share.h). */
+/* The first part is the last of the line along which blocks are lined up (partition/share.h). */
 void pw_nodes_part(const pw_nodes *nodes, int part, int parts, pw_idx *first, pw_idx *last)
 {
   part = parts - 1 - part;

@@ -94,8 +94,8 @@ static inline void pw_nodes_group(const pw_nodes *nodes, pw_idx i, pw_off *first
   *last = *first + PW_NODE_GROUP < nodes->count ? *first + PW_NODE_GROUP : nodes->count;
 }
 
-/** @brief Groups in use [*first, *last) of one of @p parts; part 0 has the last ones, the top of the
- *  grid (partition/share.h says why). */
+/** @brief Groups in use [*first, *last) of one of @p parts; part 0 has those that were put in use
+ *  last, at the top of the grid or its right, but for a few of lines (partition/share.h). */
 void pw_nodes_part(const pw_nodes *nodes, int part, int parts, pw_idx *first, pw_idx *last);
 
 /** @brief Set every record in use to zero. */

@@ -64,7 +64,7 @@ static void spread(const pw_sim *sim, int f, pw_idx j, int slot, int n)
 }
 
 /* Neighbouring kept rows share a hanging one, which is cleared when both have taken. From the top
- * down, as the parts of the nodes are given to the threads (pw_nodes_part). */
+ * down: with one field that is how the nodes are given to the threads (pw_nodes_part). */
 void pw_pairs_collect(pw_sim *sim, int slot, int n)
 {
   const pw_idx rows = kept_rows(&sim->mesh), first = sim->mesh.pair_row[0];

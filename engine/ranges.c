@@ -61,8 +61,8 @@ void pw_ranges_use(const pw_sim *sim, pw_idx block, pw_nodes *nodes)
 static void use_nodes(pw_sim *sim)
 {
   pw_nodes_reset(&sim->nodes);
-  for (pw_idx k = 0; k < sim->blocks.nblock; k++) {
-    pw_ranges_use(sim, k, &sim->nodes);
+  for (pw_idx l = 0; l < sim->blocks.nblock; l++) { /* so that a thread's nodes lie at its blocks */
+    pw_ranges_use(sim, sim->blocks.share_line[l], &sim->nodes);
   }
   pw_pairs_use(sim);
 }

@@ -63,7 +63,7 @@ pw_status pw_rates_create(pw_sim *sim)
     set->share_start = set->share_block = NULL;
     set->share_size = set->share_work = NULL;
     set->share_line = set->share_owner = set->share_order = NULL;
-    set->share_place = set->share_sum = NULL;
+    set->share_place = set->share_border = set->share_sum = NULL;
     PW_TRY(pw_share_create(set, sim->threads));
   }
   return PW_OK;
@@ -104,7 +104,8 @@ void pw_rates_renew(pw_sim *sim)
   for (int l = 1; l <= r->levels; l++) {
     pw_nodes_reset(&r->held[l]);
   }
-  for (pw_idx k = 0; k < sim->blocks.nblock; k++) {
+  for (pw_idx i = 0; i < sim->blocks.nblock; i++) {
+    const pw_idx k = sim->blocks.share_line[i];
     if (r->level[k] > 0) {
       pw_ranges_use(sim, k, &r->held[r->level[k]]);
     }

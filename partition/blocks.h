@@ -36,9 +36,9 @@ typedef struct pw_blocks {
   pw_off *share_size;  /**< [nblock] work of a block in a coloured pass, >= 0: its points */
   pw_off *share_work;  /**< [nblock] work of a block in the passes without colours, >= 0 */
   pw_idx *share_line;  /**< [nblock] blocks along the longer side of the grid */
-  pw_real *share_place; /**< [nblock] scratch of the division, and so are the next three */
-  pw_idx *share_owner, *share_order; /**< [nblock] */
-  pw_real *share_sum;                /**< [share_room] */
+  pw_real *share_place, *share_border; /**< [nblock] scratch of the division, like the next three */
+  pw_idx *share_owner, *share_order;   /**< [nblock] */
+  pw_real *share_sum;                  /**< [share_room] */
 } pw_blocks;
 
 /**
@@ -63,8 +63,8 @@ pw_status pw_blocks_create_even(const pw_idx *cells, const pw_idx *weight, pw_id
                                 pw_blocks *out);
 
 /**
- * @brief What colours allow as a speed-up on @p threads (1 to 64) when each colour is divided with no
- *        regard to where blocks lie: largest first, each to the thread that has least (Graham 1969).
+ * @brief What colours allow as a speed-up on @p threads (1 to 64) when each is divided with no
+ *        regard to where blocks lie: largest first, to the thread that has least (Graham 1969).
  * @param[in]  size [nblock] work of each block
  * @param[out] bound sum of size / sum over colours of the largest share
  * @return PW_OK; PW_ERR_ARGUMENT; PW_ERR_MEMORY.

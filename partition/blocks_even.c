@@ -12,7 +12,7 @@
 
 #include "engine/core/mem.h"
 
-/* Parts of 2 and 4 that a division reaches, barriers counted, beyond which no other is looked for. */
+/* Part of 2 and 4 threads, barriers counted, that is enough for not looking further. */
 static const pw_real ENOUGH = 0.95;
 
 /* By what a larger size has to be better: smaller blocks can be divided among more threads, and

@@ -22,7 +22,11 @@ static const pw_real CLOSE = 0.25;
  * processor's cache: measured on two threads, half to once the work of a scatter. */
 static const pw_real FAR_COST = 0.5, FAR = 0.25;
 
-enum { EXCHANGED = 64 /* blocks of a list; in longer ones moves alone even out well enough */ };
+/* A block for whoever is free is no larger than this part of what a thread does. */
+static const pw_real PIECE = 0.25;
+
+/* Pairs of blocks looked at for an exchange; longer lists are evened out by moves alone. */
+enum { EXCHANGES = 16384 };
 
 /* Position of a block along the longer side of the grid, in elements; without a grid its number. */
 static pw_real position(const pw_blocks *b, pw_idx k)
@@ -64,6 +68,7 @@ pw_status pw_share_create(pw_blocks *b, int threads)
   PW_TRY(pw_mem_alloc("shares: work", b->nblock, sizeof *b->share_work, &b->share_work));
   PW_TRY(pw_mem_alloc("shares: line", b->nblock, sizeof *b->share_line, &b->share_line));
   PW_TRY(pw_mem_alloc("shares: places", b->nblock, sizeof *b->share_place, &b->share_place));
+  PW_TRY(pw_mem_alloc("shares: borders", b->nblock, sizeof *b->share_border, &b->share_border));
   PW_TRY(pw_mem_alloc("shares: owners", b->nblock, sizeof *b->share_owner, &b->share_owner));
   PW_TRY(pw_mem_alloc("shares: order", b->nblock, sizeof *b->share_order, &b->share_order));
   PW_TRY(pw_mem_alloc("shares: sums", b->share_room, sizeof *b->share_sum, &b->share_sum));
@@ -79,10 +84,20 @@ void pw_share_destroy(pw_blocks *b)
   pw_mem_free(&b->share_work);
   pw_mem_free(&b->share_line);
   pw_mem_free(&b->share_place);
+  pw_mem_free(&b->share_border);
   pw_mem_free(&b->share_owner);
   pw_mem_free(&b->share_order);
   pw_mem_free(&b->share_sum);
   b->nthread = b->share_room = 0;
+}
+
+/* How far a block lies from the nearest border between two threads, in parts. */
+static pw_real from_border(const pw_blocks *b, pw_idx k)
+{
+  const pw_real place = b->share_place[k];
+  pw_idx border = (pw_idx)(place + 0.5);
+  border = border < 1 ? 1 : border < b->share_room ? border : b->share_room - 1;
+  return place > border ? place - border : border - place;
 }
 
 /* Where each block lies among the threads, from the end of the line: those between t and t + 1, a
@@ -97,6 +112,7 @@ static void set_places(pw_blocks *b)
   for (pw_idx l = b->nblock - 1; l >= 0; l--) {
     const pw_idx k = b->share_line[l];
     b->share_place[k] = ((pw_real)before + 0.5 * (pw_real)b->share_work[k]) / each;
+    b->share_border[k] = from_border(b, k);
     before += b->share_work[k];
   }
 }
@@ -105,15 +121,6 @@ static pw_idx home(const pw_blocks *b, pw_idx k)
 {
   const pw_idx t = (pw_idx)b->share_place[k];
   return t < b->share_room ? t : b->share_room - 1;
-}
-
-/* How far a block lies from the nearest border between two threads, in parts. */
-static pw_real from_border(const pw_blocks *b, pw_idx k)
-{
-  const pw_real place = b->share_place[k];
-  pw_idx border = (pw_idx)(place + 0.5);
-  border = border < 1 ? 1 : border < b->share_room ? border : b->share_room - 1;
-  return place > border ? place - border : border - place;
 }
 
 /* What a block costs thread t. */
@@ -135,7 +142,7 @@ static pw_idx order_list(pw_blocks *b, const pw_idx *list, pw_idx n)
     if (b->share_size[k] <= 0) {
       continue;
     }
-    for (; at > 0 && from_border(b, order[at - 1]) < from_border(b, k); at--) {
+    for (; at > 0 && b->share_border[order[at - 1]] < b->share_border[k]; at--) {
       order[at] = order[at - 1];
     }
     order[at] = k;
@@ -201,6 +208,7 @@ static void consider(const pw_blocks *b, const jobs *j, pw_idx give, pw_idx take
  * is shorter than now. */
 static deal best_deal(const pw_blocks *b, const jobs *j, pw_idx busiest)
 {
+  const bool exchange = (pw_off)j->held * j->held <= (pw_off)EXCHANGES * b->share_room;
   deal best = {-1, -1, -1, b->share_sum[busiest], 0.0};
   for (pw_idx i = 0; i < j->held; i++) {
     const pw_idx k = b->share_order[i];
@@ -212,7 +220,7 @@ static deal best_deal(const pw_blocks *b, const jobs *j, pw_idx busiest)
         consider(b, j, k, -1, t, &best);
       }
     }
-    for (pw_idx o = 0; o < j->held && j->held <= EXCHANGED; o++) {
+    for (pw_idx o = 0; o < j->held && exchange; o++) {
       const pw_idx other = b->share_order[o];
       if (b->share_owner[other] != busiest) {
         consider(b, j, k, other, b->share_owner[other], &best);
@@ -247,7 +255,7 @@ static void even_out(pw_blocks *b, const jobs *j, pw_off all)
   }
 }
 
-/* Puts block i of the order at the front of the tail that begins at `tail`, then behind larger ones. */
+/* Puts block i of the order into the tail, which begins at `tail`, behind larger ones. */
 static void put_in_tail(pw_blocks *b, pw_idx i, pw_idx tail, pw_idx held, const pw_off *load)
 {
   pw_idx *order = b->share_order, at = i;
@@ -280,16 +288,18 @@ static pw_idx give_out(pw_blocks *b, pw_idx held, const pw_off *load)
     largest = l > largest ? l : largest;
   }
   const pw_off room = b->share_room > 1 ? (pw_off)(TAIL * (pw_real)all) : -1;
+  const pw_real piece = PIECE * (pw_real)all / b->share_room;
+  const pw_real far_cost = b->cells[0] > 0 ? FAR_COST : 0.0; /* without a grid nothing is far */
   for (pw_idx i = held - 1; i >= 0; i--) {
     const pw_idx k = b->share_order[i];
-    if (tail + load[k] <= room && from_border(b, k) < CLOSE) {
+    if (tail + load[k] <= room && (pw_real)load[k] <= piece && b->share_border[k] < CLOSE) {
       tail += load[k];
       put_in_tail(b, i, owned--, held, load);
     } else {
       b->share_owner[k] = home(b, k);
     }
   }
-  even_out(b, &(jobs){owned, load, FAR_COST}, all);
+  even_out(b, &(jobs){owned, load, far_cost}, all);
   if (longest(b, owned, load) > (pw_real)all / b->share_room + (pw_real)largest) {
     even_out(b, &(jobs){owned, load, 0.0}, all); /* however far the ways, not more than that */
   }

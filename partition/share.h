@@ -14,7 +14,8 @@
 #include "partition/blocks.h"
 
 /**
- * @brief Memory for a division of @p b, whose elements and colours are set, among @p threads, freed by pw_blocks_destroy().
+ * @brief Memory for a division of @p b, whose elements and colours are set, among @p threads, freed
+ *        by pw_blocks_destroy().
  *
  * Until pw_share_balance() is called there is no division (b->nthread is 0).
  * @return PW_OK; PW_ERR_MEMORY.
@@ -28,18 +29,19 @@ void pw_share_destroy(pw_blocks *b);
  * @brief Divide each colour by b->share_size and all blocks by b->share_work, which the caller has
  *        set; blocks of size 0 belong to nobody and are left out.
  *
- * The blocks in their order along the longer side of the grid, cut into parts of equal work, give
- * each a thread to begin with, the same in all lists; thread 0 gets the last part, the top of the
- * grid or its right, because it also runs what is not divided, and that is mostly at piles. So threads hold regions of the grid, and points
- * and nodes stay in the cache of one processor from pass to pass: a line that comes from another
- * takes 40 ns where two share a cache and 225 where they do not (measured). Then blocks are moved and
- * exchanged as long as that relieves the busiest thread, a block costing more the farther it lies
- * from its thread's part (share.c), which leaves no thread more than the mean and one block, the
- * bound of any list schedule (Graham 1969, "Bounds on multiprocessing timing anomalies"). With
- * several threads some blocks close to the borders, a tenth of a list's work at most, are left to
- * whoever is free first: a processor that is taken away for a while, or a block that costs more than
- * counted, then holds up the others less, and what changes hands lies at the border. Allocates
- * nothing.
+ * The blocks in their order along the longer side of the grid, cut into parts of equal share_work,
+ * give each a thread to begin with, the same for every colour and for all blocks; thread 0 gets the
+ * last part, the top of the grid or its right, because it also runs what is not divided, which is
+ * mostly at piles. So threads hold regions of the grid, and points and nodes stay in the cache of
+ * one processor from pass to pass: a line that comes from another takes 40 ns where two share a
+ * cache and 225 where they do not (measured). Then blocks are moved and exchanged as long as that
+ * relieves the busiest thread, a block costing more the farther it lies from its thread's part
+ * (share.c), which leaves none more than the mean and one block, the bound of any list schedule
+ * (Graham 1969, "Bounds on multiprocessing timing anomalies"). With several threads small blocks
+ * close to the borders, a tenth of a list's work at most, are left to whoever is free first: a
+ * processor that is taken away for a while, or a block that costs more than counted, then holds up
+ * the others less, and what changes hands lies at the border. Without a grid (cells 0) nothing is
+ * far. Allocates nothing.
  */
 void pw_share_balance(pw_blocks *b);
 

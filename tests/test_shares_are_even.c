@@ -2,8 +2,8 @@
 /* Division of blocks among threads: each block that holds something has one owner in its colour and
  * one among all blocks or is left to whoever is free, the others none; when the latter go to the
  * thread that has done least, no share exceeds the mean by more than one block, which is Graham's
- * bound for any list schedule (1969); the pile's division is more even than equal numbers of blocks,
- * blocks run with the thread that holds their part of the grid or close to it, and the size that is
+ * bound for any list schedule (1969); the pile's division is more even than equal numbers of
+ * blocks; blocks run with the thread that holds their part of the grid or close to it; the size
  * chosen for blocks has colours that two and four threads can share evenly. Records of nodes out of
  * use never carry mass. */
 #include "tests/engine_scenes.h"
@@ -83,7 +83,11 @@ static void check_bound(const pw_off *load, pw_real equal, pw_real divided)
   for (int k = 0; k < 4; k++) {
     all += own[k] = load[k];
   }
-  pw_blocks b = {.nblock = 4, .ncolour = 1, .colour_start = one_colour, .colour_block = blocks};
+  pw_blocks b = {.nblock = 4,
+                 .ncolour = 1,
+                 .cells = {1, 4},
+                 .colour_start = one_colour,
+                 .colour_block = blocks};
   b.share_size = b.share_work = own;
   pw_share_bound(&b, 2, &coloured, &plain);
   assert_near(coloured, (pw_real)all / equal, 1e-15);
@@ -110,8 +114,8 @@ static void bounds_are_those_of_the_shares(void **state)
   check_bound((const pw_off[]){1, 1, 3, 3}, 6.0, 4.0);
 }
 
-/* The part of a list's work that is run, by other threads than those that hold its part of the grid,
- * farther than a quarter of the grid from there. */
+/* The part of a list's work that is run by other threads than those that hold its part of the grid,
+ * and farther than a quarter of the grid from there. */
 static pw_real part_far_off(const pw_blocks *b, pw_idx c, const pw_off *load)
 {
   const pw_idx *start = b->share_start + (pw_off)c * (b->nthread + 1);
@@ -119,7 +123,8 @@ static pw_real part_far_off(const pw_blocks *b, pw_idx c, const pw_off *load)
   for (pw_idx k = 0; k < b->nblock; k++) {
     all += b->share_work[k];
   }
-  for (pw_idx k = b->nblock - 1; k >= 0; k--) { /* thread 0 holds the top */
+  for (pw_idx i = b->nblock - 1; i >= 0; i--) { /* thread 0 holds the top, or the right */
+    const pw_idx k = b->share_line[i];
     const pw_real at = (pw_real)(2 * before + b->share_work[k]) / (pw_real)(2 * all);
     before += b->share_work[k];
     for (int t = 0; t < b->nthread; t++) {
@@ -133,6 +138,47 @@ static pw_real part_far_off(const pw_blocks *b, pw_idx c, const pw_off *load)
     }
   }
   return sum > 0 ? (pw_real)far / (pw_real)sum : 0.0;
+}
+
+/* Along the line that blocks form, places in the grid do not fall; few are run far from there. */
+static void check_places(pw_blocks *b, const pw_off *size)
+{
+  for (int threads = 2; threads <= 4; threads++) {
+    assert_ok(pw_share_create(b, threads));
+    memcpy(b->share_size, size, (size_t)b->nblock * sizeof *size);
+    memcpy(b->share_work, size, (size_t)b->nblock * sizeof *size);
+    pw_share_balance(b);
+    pw_real far = 0.0;
+    for (pw_idx c = 0; c < b->ncolour; c++) {
+      far += part_far_off(b, c, size) / b->ncolour;
+    }
+    print_message("%d threads: %.1f %% of the scatters and %.1f %% of the rest far off\n", threads,
+                  100.0 * far, 100.0 * part_far_off(b, b->ncolour, size));
+    assert_true(far <= 0.05 && part_far_off(b, b->ncolour, size) <= 0.01);
+    const bool wide = b->cells[0] > b->cells[1];
+    const pw_idx first = b->elem[b->elem_start[b->share_line[0]]];
+    const pw_idx last = b->elem[b->elem_start[b->share_line[b->nblock - 1]]];
+    assert_true(wide ? first % b->cells[0] < b->cells[0] / 8
+                     : first / b->cells[0] < b->cells[1] / 8);
+    assert_true(wide ? last % b->cells[0] > b->cells[0] * 3 / 4
+                     : last / b->cells[0] > b->cells[1] * 3 / 4);
+    pw_share_destroy(b);
+  }
+}
+
+/* A wide grid is cut across, not along. */
+static void wide_grids_are_cut_across(void **state)
+{
+  (void)state;
+  pw_blocks b = {0};
+  pw_off size[300] = {0};
+  assert_ok(pw_blocks_create((pw_idx[]){160, 24}, NULL, 48, 2, 1, &b));
+  assert_true(b.nblock <= 300);
+  for (pw_idx e = 0; e < b.nelem; e++) {
+    size[b.elem_block[e]] += 4;
+  }
+  check_places(&b, size);
+  pw_blocks_destroy(&b);
 }
 
 /* The grid of cases/hammered_pile: 10 m of soil and the pile's column above it. */
@@ -158,20 +204,7 @@ static void chosen_sizes_divide_evenly(void **state)
   print_message("%d blocks, %d colours: bounds %.3f on 2 threads, %.3f on 4\n", b.nblock, b.ncolour,
                 on_2, on_4);
   assert_true(on_2 >= 1.92 && on_2 <= 2.0 && on_4 >= 3.6 && on_4 <= 4.0);
-  for (int threads = 2; threads <= 4; threads++) {
-    assert_ok(pw_share_create(&b, threads));
-    memcpy(b.share_size, size, (size_t)b.nblock * sizeof *size);
-    memcpy(b.share_work, size, (size_t)b.nblock * sizeof *size);
-    pw_share_balance(&b);
-    pw_real far = 0.0;
-    for (pw_idx c = 0; c < b.ncolour; c++) {
-      far += part_far_off(&b, c, size) / b.ncolour;
-    }
-    print_message("%d threads: %.1f %% of the scatters and %.1f %% of the rest far off\n", threads,
-                  100.0 * far, 100.0 * part_far_off(&b, b.ncolour, size));
-    assert_true(far <= 0.05 && part_far_off(&b, b.ncolour, size) <= 0.01);
-    pw_share_destroy(&b);
-  }
+  check_places(&b, size);
   free(size);
   free(weight);
   pw_blocks_destroy(&b);
@@ -212,6 +245,7 @@ int main(void)
       cmocka_unit_test(each_block_has_one_owner),
       cmocka_unit_test(bounds_are_those_of_the_shares),
       cmocka_unit_test(chosen_sizes_divide_evenly),
+      cmocka_unit_test(wide_grids_are_cut_across),
       cmocka_unit_test(out_of_use_is_without_mass),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);

@@ -45,7 +45,7 @@ typedef struct boundary {
   pw_real reaction[2]; /* on the bodies, mean over the last step, whole body; N */
   pw_idx n;
   pw_idx *node;    /* [n] ascending */
-  pw_real *gained; /* [nfield][n][2] momentum that each node is kept from gaining; kg m/s */
+  pw_real *gained; /* [nfield][n][2] momentum that each node in use is kept from gaining; kg m/s */
 } boundary;
 
 static pw_status check(const pw_scene *scene, const void *param)
@@ -169,9 +169,10 @@ static pw_status sum_reaction(pw_sim *sim, void *ctx)
   for (int f = first; f < last; f++) {
     for (pw_idx k = 0; k < c->n; k++) {
       pw_real *gained = c->gained + 2 * ((pw_off)f * c->n + k);
+      const bool held = pw_nodes_in_use(&sim->nodes, f, c->node[k]);
       for (int a = 0; a < 2; a++) {
-        sum[a] += gained[a];
-        gained[a] = 0.0; /* the record may be out of use in the next step */
+        sum[a] += held ? gained[a] : 0.0; /* else of a step that failed */
+        gained[a] = 0.0;                  /* the record may be out of use in the next step */
       }
     }
   }
