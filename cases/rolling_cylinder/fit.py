@@ -7,7 +7,8 @@ usage: fit.py RUN_FOLDER [TILT_DEG FRICTION]
 Fits x = x0 + v0 t + a t^2 / 2 to history.csv from 0.3 s after the tilt on, by least squares.
 Rigid cylinder (thesis eq. 2.54, 2.55): a = (2/3) g sin(tilt) when it rolls, which it does for
 friction >= tan(tilt) / 3, else a = g (sin(tilt) - friction cos(tilt)); it turns by
-phi = x / R, or phi R / x = 2 friction / (tan(tilt) - friction). TILT_DEG and FRICTION are read
+phi = x / R, or phi R / x = 2 friction / (tan(tilt) - friction); over the same time the slope of its
+spin times R over a, which leaves out the start, is fitted, too. TILT_DEG and FRICTION are read
 from the name of the scene in summary.json unless given.
 """
 import csv
@@ -41,6 +42,13 @@ def fit_parabola(times, values):
     matrix = [[sum(p[i] * p[j] for p in powers) for j in range(3)] for i in range(3)]
     right = [sum(p[i] * v for p, v in zip(powers, values)) for i in range(3)]
     return solve(matrix, right)
+
+
+def fit_line(times, values):
+    """Slope of a line."""
+    mean_t, mean_v = sum(times) / len(times), sum(values) / len(values)
+    across = sum((t - mean_t) * (v - mean_v) for t, v in zip(times, values))
+    return across / sum((t - mean_t) ** 2 for t in times)
 
 
 def exact(tilt, friction):
@@ -89,6 +97,9 @@ def main():
                   f"ratio {way[k] / (0.5 * a * t * t):.4f}")
     if way[-1] != 0.0:
         print(f"turned angle x radius / way {angle[-1] * RADIUS / way[-1]:.4f}, exact {ratio:.4f}")
+    faster = fit_line([time[k] for k in late], [-spin[k] for k in late])
+    print(f"fitted spin acceleration x radius / fitted acceleration {faster * RADIUS / (2 * c[2]):.4f}, "
+          f"exact {ratio:.4f}")
     weight = DENSITY * math.pi * RADIUS**2 * GRAVITY * math.cos(math.radians(tilt_deg))
     push = [-history["contact_force_y_n"][k] for k in late]
     print(f"mean normal force / (m g cos tilt) {sum(push) / len(push) / weight:.4f}")
