@@ -114,12 +114,28 @@ static void hammered_pile(void **state)
   pw_sim_destroy(&sim);
 }
 
+/* Stages that run by parts alone would leave out an ordinary hook; others a hook by parts. */
+static void hooks_stand_in_stages_that_run_them(void **state)
+{
+  (void)state;
+  for (int e = 0; pw_effect_at(e); e++) {
+    for (const pw_hook *h = pw_effect_at(e)->hooks; h && h->fn; h++) {
+      assert_true(h->stage != PW_STAGE_WEIGHT && h->stage != PW_STAGE_MOTION);
+    }
+    for (const pw_part_hook *h = pw_effect_at(e)->part_hooks; h && h->fn; h++) {
+      assert_true(h->stage == PW_STAGE_WEIGHT || h->stage == PW_STAGE_CONSTRAINT ||
+                  h->stage == PW_STAGE_REMAP || h->stage == PW_STAGE_MOTION);
+    }
+  }
+}
+
 int main(void)
 {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(elastic_column),
       cmocka_unit_test(biaxial_test),
       cmocka_unit_test(hammered_pile),
+      cmocka_unit_test(hooks_stand_in_stages_that_run_them),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }
