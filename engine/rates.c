@@ -59,11 +59,7 @@ pw_status pw_rates_create(pw_sim *sim)
       pw_nodes_reset(&r->held[l]);
     }
     pw_blocks *set = &r->set[l];
-    *set = sim->blocks;
-    set->share_start = set->share_block = NULL;
-    set->share_size = set->share_work = NULL;
-    set->share_line = set->share_owner = set->share_order = NULL;
-    set->share_place = set->share_border = set->share_sum = NULL;
+    *set = pw_share_undivided(&sim->blocks);
     PW_TRY(pw_share_create(set, sim->threads));
   }
   return PW_OK;

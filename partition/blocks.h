@@ -55,21 +55,12 @@ pw_status pw_blocks_create(const pw_idx *cells, const pw_idx *weight, pw_idx per
 /**
  * @brief The same with blocks of a size that can be divided evenly: of a few sizes from
  *        pw_blocks_choose_size() on the one whose coloured passes lose least on 2 and 4 threads
- *        (pw_blocks_bound()), barriers counted; a larger one has to be better by 2 %.
+ *        (pw_share_plan()), barriers counted; a larger one has to be better by 2 %.
  *
  * Counted from @p weight, never timed: the same on every machine and for any number of threads.
  */
 pw_status pw_blocks_create_even(const pw_idx *cells, const pw_idx *weight, pw_idx reach, int nbody,
                                 pw_blocks *out);
-
-/**
- * @brief What colours allow as a speed-up on @p threads (1 to 64) when each is divided with no
- *        regard to where blocks lie: largest first, to the thread that has least (Graham 1969).
- * @param[in]  size [nblock] work of each block
- * @param[out] bound sum of size / sum over colours of the largest share
- * @return PW_OK; PW_ERR_ARGUMENT; PW_ERR_MEMORY.
- */
-pw_status pw_blocks_bound(const pw_blocks *b, int threads, const pw_off *size, pw_real *bound);
 
 /** @brief Free; a zeroed struct is accepted. */
 void pw_blocks_destroy(pw_blocks *b);

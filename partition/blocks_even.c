@@ -11,6 +11,7 @@
 #include <math.h>
 
 #include "engine/core/mem.h"
+#include "partition/share.h"
 
 /* Part of 2 and 4 threads, barriers counted, that is enough for not looking further. */
 static const pw_real ENOUGH = 0.95;
@@ -23,56 +24,12 @@ static const pw_real BETTER = 1.02;
 static const pw_idx EIGHTHS[] = {8, 10, 12, 13, 14, 15, 16, 17, 18, 20, 24, 32};
 
 enum {
-  MOST_THREADS = 64,
   MAX_TRIED = 40000, /* elements; beyond, blocks are numerous enough for any size */
   /* Points scattered by one thread in the time that a colour costs beside its work. Measured on two
    * threads with 40 to 111 blocks in 5 to 8 colours: 2.5 to 4 microseconds, 70 to 110 points, where
    * the processors share a cache, and 9 to 13 where they do not. */
   BARRIER = 80
 };
-
-/* The blocks of a colour by falling size, each to the thread that has least: the longest. */
-static pw_off longest_share(const pw_blocks *b, pw_idx c, const pw_off *size, int threads,
-                            pw_idx *order)
-{
-  pw_off sum[MOST_THREADS] = {0}, longest = 0;
-  const pw_idx *list = b->colour_block + b->colour_start[c];
-  const pw_idx n = b->colour_start[c + 1] - b->colour_start[c];
-  for (pw_idx l = 0; l < n; l++) {
-    pw_idx at = l;
-    for (; at > 0 && size[order[at - 1]] < size[list[l]]; at--) {
-      order[at] = order[at - 1];
-    }
-    order[at] = list[l];
-  }
-  for (pw_idx l = 0; l < n; l++) {
-    int to = 0;
-    for (int t = 1; t < threads; t++) {
-      to = sum[t] < sum[to] ? t : to;
-    }
-    sum[to] += size[order[l]];
-    longest = sum[to] > longest ? sum[to] : longest;
-  }
-  return longest;
-}
-
-pw_status pw_blocks_bound(const pw_blocks *b, int threads, const pw_off *size, pw_real *bound)
-{
-  PW_REQUIRE(threads >= 1 && threads <= MOST_THREADS, PW_ERR_ARGUMENT, "a bound for %d threads",
-             threads);
-  pw_idx *order = NULL;
-  pw_off all = 0, longest = 0;
-  PW_TRY(pw_mem_alloc("blocks by size", b->nblock, sizeof *order, &order));
-  for (pw_idx k = 0; k < b->nblock; k++) {
-    all += size[k];
-  }
-  for (pw_idx c = 0; c < b->ncolour; c++) {
-    longest += longest_share(b, c, size, threads, order);
-  }
-  pw_mem_free(&order);
-  *bound = longest > 0 ? (pw_real)all / (pw_real)longest : 1.0;
-  return PW_OK;
-}
 
 /* Mean part of their number that 2 and 4 threads reach in the scatters, barriers counted. */
 static pw_status rate(const pw_blocks *b, const pw_idx *weight, pw_real *merit)
@@ -87,7 +44,7 @@ static pw_status rate(const pw_blocks *b, const pw_idx *weight, pw_real *merit)
   *merit = 1.0;
   for (int threads = 2; threads <= 4 && s == PW_OK && all > 0; threads += 2) {
     pw_real bound = 1.0;
-    s = pw_blocks_bound(b, threads, size, &bound);
+    s = pw_share_plan(b, threads, size, &bound);
     const pw_real time = (pw_real)all / bound + (pw_real)(BARRIER * b->ncolour);
     *merit *= (pw_real)all / time / threads;
   }

@@ -55,6 +55,16 @@ static void line_up(pw_blocks *b)
   }
 }
 
+pw_blocks pw_share_undivided(const pw_blocks *b)
+{
+  pw_blocks out = *b;
+  out.share_start = out.share_block = out.share_line = out.share_owner = out.share_order = NULL;
+  out.share_size = out.share_work = NULL;
+  out.share_place = out.share_border = out.share_sum = NULL;
+  out.nthread = out.share_room = 0;
+  return out;
+}
+
 pw_status pw_share_create(pw_blocks *b, int threads)
 {
   b->nthread = 0;
@@ -231,7 +241,7 @@ static deal best_deal(const pw_blocks *b, const jobs *j, pw_idx busiest)
 }
 
 /* Every deal makes the busiest thread less busy, or one of several equally busy ones, so the search
- * ends; it stops early once no thread has more than an even part of `all`, tail included. */
+ * ends; it stops early once no thread has more than an even part of `all`. */
 static void even_out(pw_blocks *b, const jobs *j, pw_off all)
 {
   pw_real *sum = b->share_sum;
@@ -267,41 +277,46 @@ static void put_in_tail(pw_blocks *b, pw_idx i, pw_idx tail, pw_idx held, const 
 }
 
 /* What the busiest thread has to do, however far off. */
-static pw_real longest(pw_blocks *b, pw_idx owned, const pw_off *load)
+static pw_real longest(pw_blocks *b, pw_idx held, const pw_off *load)
 {
   memset(b->share_sum, 0, (size_t)b->share_room * sizeof *b->share_sum);
-  for (pw_idx i = 0; i < owned; i++) {
+  for (pw_idx i = 0; i < held; i++) {
     const pw_idx k = b->share_order[i];
     b->share_sum[b->share_owner[k]] += (pw_real)load[k];
   }
   return b->share_sum[most(b->share_sum, b->share_room)];
 }
 
-/* Owners of all blocks but the tail; how many have one. */
-static pw_idx give_out(pw_blocks *b, pw_idx held, const pw_off *load)
+/* Owners of all blocks of a list. */
+static void give_out(pw_blocks *b, pw_idx held, const pw_off *load, pw_off all)
 {
-  pw_off all = 0, tail = 0, largest = 0;
-  pw_idx owned = held;
+  const pw_real far_cost = b->cells[0] > 0 ? FAR_COST : 0.0; /* without a grid nothing is far */
+  pw_off largest = 0;
   for (pw_idx i = 0; i < held; i++) {
-    const pw_off l = load[b->share_order[i]];
-    all += l;
-    largest = l > largest ? l : largest;
+    const pw_idx k = b->share_order[i];
+    largest = load[k] > largest ? load[k] : largest;
+    b->share_owner[k] = home(b, k);
   }
+  even_out(b, &(jobs){held, load, far_cost}, all);
+  if (longest(b, held, load) > (pw_real)all / b->share_room + (pw_real)largest) {
+    even_out(b, &(jobs){held, load, 0.0}, all); /* however far the ways, not more than that */
+  }
+}
+
+/* Takes the tail from its owners; how many blocks keep theirs. */
+static pw_idx set_free(pw_blocks *b, pw_idx held, const pw_off *load, pw_off all)
+{
   const pw_off room = b->share_room > 1 ? (pw_off)(TAIL * (pw_real)all) : -1;
   const pw_real piece = PIECE * (pw_real)all / b->share_room;
-  const pw_real far_cost = b->cells[0] > 0 ? FAR_COST : 0.0; /* without a grid nothing is far */
+  pw_idx owned = held;
+  pw_off tail = 0;
   for (pw_idx i = held - 1; i >= 0; i--) {
     const pw_idx k = b->share_order[i];
     if (tail + load[k] <= room && (pw_real)load[k] <= piece && b->share_border[k] < CLOSE) {
       tail += load[k];
+      b->share_owner[k] = -1;
       put_in_tail(b, i, owned--, held, load);
-    } else {
-      b->share_owner[k] = home(b, k);
     }
-  }
-  even_out(b, &(jobs){owned, load, far_cost}, all);
-  if (longest(b, owned, load) > (pw_real)all / b->share_room + (pw_real)largest) {
-    even_out(b, &(jobs){owned, load, 0.0}, all); /* however far the ways, not more than that */
   }
   return owned;
 }
@@ -312,7 +327,15 @@ static pw_idx divide(pw_blocks *b, const pw_idx *list, pw_idx n, const pw_off *l
                      pw_idx at)
 {
   const pw_idx nt = b->share_room, held = order_list(b, list, n);
-  const pw_idx given = give_out(b, held, load);
+  pw_off all = 0;
+  for (pw_idx i = 0; i < held; i++) {
+    all += load[b->share_order[i]];
+  }
+  /* The few blocks of a colour are evened out knowing that its tail will do the rest, so that none
+   * is taken from far away for that; among all blocks the tail is taken from an even division. */
+  pw_idx given = list ? set_free(b, held, load, all) : held;
+  give_out(b, given, load, all);
+  given = list ? given : set_free(b, held, load, all);
   for (pw_idx t = 0; t < nt; t++) {
     start[t] = at;
     for (pw_idx l = 0; l < n; l++) {
@@ -402,4 +425,20 @@ void pw_share_bound(const pw_blocks *b, int threads, pw_real *coloured, pw_real 
   }
   *coloured = longest > 0 ? (pw_real)size / (pw_real)longest : 1.0;
   *plain = part > 0 ? (pw_real)work / (pw_real)part : 1.0;
+}
+
+pw_status pw_share_plan(const pw_blocks *b, int threads, const pw_off *size, pw_real *coloured)
+{
+  pw_blocks plan = pw_share_undivided(b);
+  pw_real plain;
+  plan.cells[0] = plan.cells[1] = 0;
+  pw_status s = pw_share_create(&plan, threads);
+  if (s == PW_OK) {
+    memcpy(plan.share_size, size, (size_t)b->nblock * sizeof *size);
+    memcpy(plan.share_work, size, (size_t)b->nblock * sizeof *size);
+    pw_share_balance(&plan);
+    pw_share_bound(&plan, threads, coloured, &plain);
+  }
+  pw_share_destroy(&plan);
+  return s;
 }

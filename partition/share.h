@@ -22,6 +22,9 @@
  */
 pw_status pw_share_create(pw_blocks *b, int threads);
 
+/** @brief The same blocks, their arrays borrowed, without a division and room for one. */
+pw_blocks pw_share_undivided(const pw_blocks *b);
+
 /** @brief Free it; blocks without it are accepted. */
 void pw_share_destroy(pw_blocks *b);
 
@@ -52,5 +55,13 @@ void pw_share_balance(pw_blocks *b);
  * @param[out] plain    sum of work / the largest share
  */
 void pw_share_bound(const pw_blocks *b, int threads, pw_real *coloured, pw_real *plain);
+
+/**
+ * @brief The bound on coloured passes that @p threads would have if nothing were far: what the
+ *        colours allow.
+ * @param[in] size [nblock] work of each block; @p b may have a division, which is left alone
+ * @return PW_OK; PW_ERR_MEMORY.
+ */
+pw_status pw_share_plan(const pw_blocks *b, int threads, const pw_off *size, pw_real *coloured);
 
 #endif /* PW_PARTITION_SHARE_H */
