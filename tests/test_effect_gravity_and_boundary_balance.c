@@ -50,6 +50,41 @@ static void free_fall_follows_ramp_and_turn(void **state)
   pw_sim_destroy(&sim);
 }
 
+/* Bessel's function J0(x) = sum (-x^2 / 4)^k / k!^2, for small x. */
+static pw_real bessel_j0(pw_real x)
+{
+  pw_real sum = 0.0, term = 1.0;
+  for (int k = 1; k < 20; k++) {
+    sum += term;
+    term *= -0.25 * x * x / (k * k);
+  }
+  return sum;
+}
+
+/* A turn by alpha in the time T, the angle alpha (1 - cos(pi t / T)) / 2: the mean of its sine over
+ * T is sin(alpha / 2) J0(alpha / 2), that of its cosine cos(alpha / 2) J0(alpha / 2) (Bessel's
+ * integral). Steps take the angle in their middle, so to 1e-6 with 300 of them. */
+static void free_fall_follows_a_smooth_turn(void **state)
+{
+  (void)state;
+  const pw_real length = 0.3, alpha = pi / 3.0;
+  pw_scene scene;
+  free_block(&scene);
+  pw_gravity_param *g = pw_scene_add_effect(&scene, "gravity");
+  g->acceleration_m_s2 = 10.0;
+  g->tilt_deg = 60.0;
+  g->tilt_at_s = 0.05;
+  g->tilt_over_s = length;
+  pw_sim *sim = test_sim(&scene, 1);
+  test_run_to(sim, 0.4);
+  const pw_real turning = 10.0 * length * bessel_j0(0.5 * alpha), after = 10.0 * 0.05;
+  const pw_real x = turning * sin(0.5 * alpha) + after * sin(alpha);
+  const pw_real y = -(10.0 * 0.05 + turning * cos(0.5 * alpha) + after * cos(alpha));
+  assert_relative(value_of(sim, "body0_velocity_x_m_s"), x, 1e-6);
+  assert_relative(value_of(sim, "body0_velocity_y_m_s"), y, 1e-6);
+  pw_sim_destroy(&sim);
+}
+
 static void work_of_weight_is_the_motion_it_gives(void **state)
 {
   (void)state;
@@ -234,6 +269,7 @@ int main(void)
 {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(free_fall_follows_ramp_and_turn),
+      cmocka_unit_test(free_fall_follows_a_smooth_turn),
       cmocka_unit_test(work_of_weight_is_the_motion_it_gives),
       cmocka_unit_test(soil_at_rest_stays_at_rest),
       cmocka_unit_test(rollers_carry_the_pressure_at_rest),

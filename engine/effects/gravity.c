@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Weight of all points, with a linear ramp; the direction may turn once (inclined planes). */
+/* Weight of all points, with a linear ramp; the direction may turn once (inclined planes), at once or
+ * smoothly. */
 #include "engine/effects/common.h"
 #include "engine/effects/load_curve.h"
 #include "engine/effects/params.h"
@@ -19,6 +20,8 @@ static const pw_key keys[] = {
   {"tilt_deg", PW_KEY_REAL, AT(tilt_deg), -180, 180, "0", NULL, NULL,
    "angle by which it turns from -y towards +x"},
   {"tilt_at_s", PW_KEY_REAL, AT(tilt_at_s), 0, 1e12, "0", NULL, NULL, "time at which it turns"},
+  {"tilt_over_s", PW_KEY_REAL, AT(tilt_over_s), 0, 1e12, "0", NULL, NULL,
+   "time over which it turns, from then on, the angle as half a cosine; 0: at once"},
   {0}};
 /* clang-format on */
 
@@ -29,6 +32,11 @@ typedef struct gravity {
   pw_real *part;     /* scratch of sums */
 } gravity;
 
+static pw_real radians(pw_real degrees)
+{
+  return degrees * (PW_PI / 180.0);
+}
+
 static pw_status check(const pw_scene *scene, const void *param)
 {
   const pw_gravity_param *p = param;
@@ -38,15 +46,20 @@ static pw_status check(const pw_scene *scene, const void *param)
 }
 
 /* Explicit: mean over the step of the acceleration, so that ramp and turn do not depend on the
- * steps. */
+ * steps; of a smooth turn, up to the square of the step. */
 static void set_acceleration(pw_sim *sim, gravity *c)
 {
   const pw_gravity_param *p = c->param;
-  pw_real ramp = pw_effect_ramp(sim, 0.0, p->ramp_s);
-  pw_real turned = pw_effect_ramp(sim, p->tilt_at_s, 0.0);
-  pw_real a = p->acceleration_m_s2 * ramp;
-  c->g[0] = a * turned * c->tilted[0];
-  c->g[1] = a * (turned * c->tilted[1] - (1.0 - turned));
+  const pw_real ramp = pw_effect_ramp(sim, 0.0, p->ramp_s), a = p->acceleration_m_s2 * ramp;
+  const pw_real turned = pw_effect_ramp(sim, p->tilt_at_s, p->tilt_over_s);
+  if (p->tilt_over_s > 0.0) {
+    const pw_real angle = 0.5 * (1.0 - cos(PW_PI * turned)) * radians(p->tilt_deg);
+    c->g[0] = a * sin(angle);
+    c->g[1] = -a * cos(angle);
+  } else {
+    c->g[0] = a * turned * c->tilted[0];
+    c->g[1] = a * (turned * c->tilted[1] - (1.0 - turned));
+  }
   sim->load_factor = ramp;
 }
 
@@ -150,7 +163,7 @@ static pw_status create(pw_sim *sim, const void *param, void **ctx)
   PW_TRY(pw_mem_alloc("gravity", 1, sizeof *c, &c));
   *ctx = c;
   c->param = param;
-  pw_real tilt = c->param->tilt_deg * (PW_PI / 180.0);
+  pw_real tilt = radians(c->param->tilt_deg);
   c->tilted[0] = sin(tilt);
   c->tilted[1] = -cos(tilt);
   sim->load_factor = c->param->ramp_s > 0.0 ? 0.0 : 1.0;

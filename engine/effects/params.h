@@ -49,7 +49,7 @@ typedef struct pw_initial_stress_param {
 typedef struct pw_gravity_param {
   pw_real acceleration_m_s2;
   pw_real ramp_s;
-  pw_real tilt_deg, tilt_at_s;
+  pw_real tilt_deg, tilt_at_s, tilt_over_s;
 } pw_gravity_param;
 
 /** surcharge (many): pressure on one side of a body. */

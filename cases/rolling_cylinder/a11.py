@@ -1,0 +1,106 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The figures of a rigid cylinder (verification A11) beside those of the penalty contact.
+
+usage: a11.py [--only rigid,soft,equal] [--cell M] [--out DIR] [--program FILE] [--jobs N]
+
+Cells of 0.1 m, segments of a quarter of a cell, lines without mass; gravity turns over 0.6 s, so
+that the cylinder does not bounce. Rolling (45 degrees) and sliding (60 degrees), each with
+
+rigid: bodies and contact ten times as stiff as the thesis'; exit status 1 if one of the figures is
+       outside its tolerance. Some 4 minutes a run.
+soft:  the thesis' bodies; 80 s a run. An elastic cylinder has other figures: README.
+equal: the plane as soft as the cylinder, so that friction does not shift the normal pressure.
+
+Python's standard library only.
+"""
+import argparse
+import concurrent.futures
+import pathlib
+import subprocess
+import sys
+
+import fit
+
+HERE = pathlib.Path(__file__).resolve().parent
+TURN = 0.6  # s, some two periods of the soft cylinder on its contact
+# scene, tilt, friction, tolerances of fitted acceleration, turning and mean normal force
+MOTIONS = [("penalty_no_slip", 45.0, 0.495, (0.01, 0.005, 0.005)),
+           ("penalty_slip", 60.0, 0.286, (0.01, 0.02, 0.005))]
+# bulk modulus of cylinder and plane, Pa (the shear modulus is half of it); contact stiffness, Pa/m
+BODIES = {"rigid": (6e7, 6e8, 1e9), "soft": (6e6, 6e7, 1e8), "equal": (6e6, 6e6, 1e8)}
+
+
+def arguments():
+    p = argparse.ArgumentParser(description=__doc__,
+                                formatter_class=argparse.RawDescriptionHelpFormatter)
+    p.add_argument("--only", default="soft,rigid", help="of rigid, soft, equal (%(default)s)")
+    p.add_argument("--cell", type=float, default=0.1, help="m (%(default)s)")
+    p.add_argument("--out", type=pathlib.Path, default=pathlib.Path("out/a11"))
+    p.add_argument("--program", default=str(HERE.parents[1] / "build" / "pilewright"))
+    p.add_argument("--jobs", type=int, default=2, help="runs at a time, one thread each")
+    a = p.parse_args()
+    a.only = a.only.split(",")
+    unknown = [name for name in a.only if name not in BODIES]
+    if unknown:
+        p.error(f"--only: no bodies '{unknown[0]}'; there are {', '.join(BODIES)}")
+    return a
+
+
+def settings(bodies, cell):
+    rubber, rock, contact = BODIES[bodies]
+    keys = {"grid.cell_m": cell, "contact_penalty.segment_m": cell / 4,
+            "contact_penalty.thickness_m": 0, "gravity.tilt_over_s": TURN,
+            "contact_penalty.normal_stiffness_pa_m": contact,
+            "contact_penalty.tangential_stiffness_pa_m": contact,
+            "output.snapshot_every_s": 4, "output.picture_times_s": "[]"}
+    for name in ("cylinder", "plane"):  # three to a cell and direction
+        keys[f"bodies.{name}.point_size_m"] = cell * 0.335
+    for name, bulk in (("rubber", rubber), ("rock", rock)):
+        keys[f"materials.{name}.bulk_modulus_pa"] = bulk
+        keys[f"materials.{name}.shear_modulus_pa"] = 0.5 * bulk
+    return [word for k, v in keys.items() for word in ("--set", f"{k}={v}")]
+
+
+def run(a, bodies, scene):
+    folder = a.out / f"{bodies}_{scene}"
+    command = [a.program, "run", str(HERE / f"{scene}.yaml"), "--out", str(folder), "--force",
+               "--quiet", "--threads", "1", *settings(bodies, a.cell)]
+    done = subprocess.run(command, capture_output=True, text=True, check=False)
+    if done.returncode != 0:
+        sys.exit(f"{' '.join(command)}\n{done.stderr}")
+    return folder
+
+
+def report(bodies, motion, folder):
+    """Print a run's figures; whether all of them are within their tolerances."""
+    scene, tilt, friction, (speed, turn, push) = motion
+    f = fit.fitted(str(folder), tilt, friction, TURN)
+    figures = [("fitted acceleration", f["a"] / f["exact_a"], speed),
+               ("turned angle over way", f["turning"] / f["exact_turning"], turn),
+               ("the same, of fitted accelerations", f["late_turning"] / f["exact_late_turning"],
+                turn),
+               ("mean normal force", f["push"], push)]
+    outside = [abs(ratio - 1.0) > tolerance for _, ratio, tolerance in figures]
+    for (what, ratio, tolerance), out in zip(figures, outside):
+        print(f"{bodies:6} {scene:16} {what:33} {ratio:.4f}  1 +- {tolerance:<6g}"
+              f"{' outside' if out else ''}")
+    low, high = f["push_range"]
+    print(f"{bodies:6} {scene:16} normal force {low:.2f} to {high:.2f} of m g cos(tilt); "
+          f"moment missing {1e3 * f['offset_m']:.1f} mm x normal force", flush=True)
+    return not any(outside)
+
+
+def main():
+    a = arguments()
+    good = True
+    with concurrent.futures.ThreadPoolExecutor(a.jobs) as pool:
+        pending = [(bodies, motion, pool.submit(run, a, bodies, motion[0]))
+                   for bodies in a.only for motion in MOTIONS]
+        for bodies, motion, folder in pending:
+            within = report(bodies, motion, folder.result())
+            good = good and (within or bodies != "rigid")
+    sys.exit(0 if good else 1)
+
+
+main()
