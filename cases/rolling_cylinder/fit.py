@@ -97,13 +97,19 @@ def find_case(folder):
     return (60.0, 0.286) if slides else (45.0, 0.495)
 
 
-def missing_moment(history, late, faster):
-    """What is missing of friction times the radius to turn the cylinder as it does, over the normal
-    force: where that force stands ahead of the centre, if nothing else takes moment; m."""
-    inertia = 0.5 * DENSITY * math.pi * RADIUS**4
-    friction = -sum(history["contact_force_x_n"][k] for k in late) / len(late)
-    normal = -sum(history["contact_force_y_n"][k] for k in late) / len(late)
-    return (-friction * RADIUS - inertia * faster) / normal
+def missing_moment(history, first, last):
+    """What is missing of the impulse of friction times the radius for the spin that the cylinder
+    gains between two rows, over the impulse of the normal force; m. It is where that force stands
+    ahead of the centre, if nothing else takes moment."""
+    time = history["time_s"]
+
+    def impulse(name):
+        c = history[name]
+        return sum(0.5 * (c[k] + c[k + 1]) * (time[k + 1] - time[k]) for k in range(first, last))
+
+    spin = history["cylinder_spin_rad_s"]
+    gained = -0.5 * DENSITY * math.pi * RADIUS**4 * (spin[last] - spin[first])
+    return (impulse("contact_force_x_n") * RADIUS - gained) / -impulse("contact_force_y_n")
 
 
 def fitted(folder, tilt_deg, friction, turn=0.0):
@@ -133,7 +139,7 @@ def fitted(folder, tilt_deg, friction, turn=0.0):
             "exact_turning": rigid_angle * RADIUS / rigid_way,
             "late_turning": faster * RADIUS / a, "exact_late_turning": exact_turning,
             "push": sum(push) / len(push), "push_range": (min(push), max(push)),
-            "offset_m": missing_moment(history, late, faster)}
+            "offset_m": missing_moment(history, late[0], late[-1])}
 
 
 def main():
