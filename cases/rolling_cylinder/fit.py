@@ -125,6 +125,9 @@ def fitted(folder, tilt_deg, friction, turn=0.0):
         angle.append(angle[-1] + 0.5 * (spin[k] + spin[k - 1]) * (time[k] - time[k - 1]))
     late = [k for k, t in enumerate(time) if t >= turn + FIT_FROM - 1e-9]
     times = [time[k] for k in late]
+    if len(times) < 10:
+        sys.exit(f"{folder}/history.csv: ends {time[-1]:.3f} s after the tilt, too early for a fit "
+                 f"from {turn + FIT_FROM:g} s on")
     a = 2.0 * fit_parabola(times, [way[k] for k in late])[2]
     faster = fit_line(times, [spin[k] for k in late])
     weight = DENSITY * math.pi * RADIUS**2 * GRAVITY * math.cos(tilt)
