@@ -163,7 +163,7 @@ static void print_estimates(pw_sim *sim, pw_real first, FILE *out)
   fprintf(out,
           "steps        about %.3g, if all were as long as the first (end at %g s); soil that "
           "stiffens, fast points and a penalty contact shorten them: the shipped cases take 1.1 to "
-          "5 times as many\n",
+          "5.3 times as many\n",
           steps, end);
   fprintf(out,
           "time         about %s for these steps without outputs, within a factor of 2 on an idle "
@@ -196,7 +196,10 @@ void pw_check_report(pw_sim *sim, FILE *out)
   print_bodies(sim, pw_sim_points(sim), out);
   print_grid(pw_sim_mesh(sim), out);
   print_sizes(&r, out);
-  fprintf(out, "memory       %.1f MiB\n", (pw_real)pw_mem_bytes() / 1048576.0);
+  fprintf(out,
+          "memory       %.1f MiB of arrays, beside some 40 MiB of program, libraries and "
+          "outputs\n",
+          (pw_real)pw_mem_bytes() / 1048576.0);
   if (sim->quad) {
     print_load_steps(sim, out);
   } else {

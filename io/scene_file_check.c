@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "engine/effect.h"
 #include "engine/scene_check.h"
 #include "io/scene_file_reader.h"
 
@@ -63,8 +64,10 @@ static void check_grid_implicit(pw_reader *r)
 static void check_plane(pw_reader *r)
 {
   const pw_scene *s = r->scene;
-  r->grid.clean =
-      r->grid.clean && r->geometry_known && report(r, pw_scene_check_grid(s), r->grid.node);
+  r->grid.clean = r->grid.clean && r->geometry_known;
+  if (r->grid.clean) {
+    report(r, pw_scene_check_grid(s), r->grid.node);
+  }
   if (r->time.clean) {
     report(r, pw_scene_check_time(s), r->time.node);
   }
@@ -75,6 +78,62 @@ static void check_plane(pw_reader *r)
     report(r, pw_scene_check_output(s), r->output.node);
   }
   check_grid_implicit(r);
+}
+
+static bool all_bodies_clean(const pw_reader *r)
+{
+  return all_clean(r->material, r->scene->nmaterial) && all_clean(r->body, r->scene->nbody);
+}
+
+/* Whether body b and its material are clean. */
+static bool body_clean(const pw_reader *r, int b)
+{
+  const int m = r->scene->body[b].material;
+  return r->body[b].clean && m >= 0 && m < r->scene->nmaterial && r->material[m].clean;
+}
+
+/* Whether what effect i needs has been read: itself, the bodies it names, else all. Those it names in
+ * another way (layers) it sees lie against each other: by_place. */
+static bool effect_read(const pw_reader *r, int i, bool *by_place)
+{
+  const pw_scene *s = r->scene;
+  const pw_scene_effect *e = &s->effect[i];
+  bool good = r->effect[i].clean && r->grid.clean;
+  for (const pw_key *k = e->type->keys; k && k->name; k++) {
+    if (k->type != PW_KEY_BODY) {
+      continue;
+    }
+    int b;
+    memcpy(&b, e->param + k->offset, sizeof b);
+    const bool named = b >= 0 && b < s->nbody;
+    good = good && (named ? body_clean(r, b) : all_bodies_clean(r));
+    *by_place = *by_place || (!named && k->needs);
+  }
+  return good;
+}
+
+/* Materials, bodies, effects. What the rules of effects look at has to be read, but for places not to
+ * be right: a body outside the grid does not hide that two contacts exclude each other. */
+static void check_parts(pw_reader *r)
+{
+  const pw_scene *s = r->scene;
+  bool read[PW_MAX_EFFECTS], by_place[PW_MAX_EFFECTS] = {false};
+  for (int i = 0; i < s->neffect; i++) {
+    read[i] = effect_read(r, i, &by_place[i]);
+  }
+  for (int i = 0; i < s->nmaterial; i++) {
+    r->material[i].clean =
+        r->material[i].clean && report(r, pw_scene_check_material(s, i), r->material[i].node);
+  }
+  for (int i = 0; i < s->nbody; i++) {
+    r->body[i].clean =
+        r->body[i].clean && r->grid.clean && report(r, pw_scene_check_body(s, i), r->body[i].node);
+  }
+  for (int i = 0; i < s->neffect; i++) {
+    if (read[i] && (!by_place[i] || all_bodies_clean(r))) {
+      report(r, pw_scene_check_effect(s, i), r->effect[i].node);
+    }
+  }
 }
 
 /* Rules are applied only where all they look at is clean: no errors that follow from errors. */
@@ -92,19 +151,5 @@ void pw_reader_check(pw_reader *r)
   } else {
     check_plane(r);
   }
-  for (int i = 0; i < s->nmaterial; i++) {
-    r->material[i].clean =
-        r->material[i].clean && report(r, pw_scene_check_material(s, i), r->material[i].node);
-  }
-  for (int i = 0; i < s->nbody; i++) {
-    r->body[i].clean =
-        r->body[i].clean && r->grid.clean && report(r, pw_scene_check_body(s, i), r->body[i].node);
-  }
-  bool ready =
-      r->grid.clean && all_clean(r->material, s->nmaterial) && all_clean(r->body, s->nbody);
-  for (int i = 0; ready && i < s->neffect; i++) {
-    if (r->effect[i].clean) {
-      report(r, pw_scene_check_effect(s, i), r->effect[i].node);
-    }
-  }
+  check_parts(r);
 }

@@ -22,7 +22,7 @@ static void mms_scene(pw_scene *s, int basis, int update, int n)
   pw_body_force_param *force = pw_scene_add_effect(s, "body_force");
   force->body = 0;
   force->kind = PW_MMS_AXIS_ALIGNED;
-  force->amplitude = 0.05;
+  force->amplitude_m = 0.05;
   for (int side = PW_SIDE_BOTTOM; side <= PW_SIDE_RIGHT; side++) {
     pw_boundary_param *b = pw_scene_add_effect(s, "boundary");
     b->side = side;

@@ -23,7 +23,7 @@ static double ring_error(int update, int n, pw_status *status)
   pw_body_force_param *force = pw_scene_add_effect(&s, "body_force");
   force->body = 0;
   force->kind = PW_MMS_RING;
-  force->amplitude = 0.1;
+  force->amplitude_m = 0.1;
   for (int side = PW_SIDE_BOTTOM; side <= PW_SIDE_TOP; side++) {
     pw_boundary_param *b = pw_scene_add_effect(&s, "boundary");
     b->side = side;

@@ -29,7 +29,7 @@ static void vortex_scene(pw_scene *s, int n)
   pw_body_force_param *force = pw_scene_add_effect(s, "body_force");
   force->body = 0;
   force->kind = PW_MMS_VORTEX;
-  force->amplitude = 1.0;
+  force->rotation_rad = 1.0;
   c_p = sqrt(young * (1.0 - poisson) / ((1.0 + poisson) * (1.0 - 2.0 * poisson)) / density);
   s->time.dt_s = 0.05 * h / c_p;
 }

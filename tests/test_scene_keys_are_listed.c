@@ -9,8 +9,7 @@
 #include "io/keys.h"
 #include "io/scene_file_reader.h"
 
-/* Numbers without a dimension, or whose dimension depends on a choice (amplitude of body_force:
- * metres or radians, as its meaning says). */
+/* Numbers without a dimension. */
 static const char *const dimensionless[] = {
     "cfl",
     "growth",
@@ -49,7 +48,6 @@ static const char *const dimensionless[] = {
     "shear_factor",
     "shear_ratio",
     "count",
-    "amplitude",
     "friction",
     "stiffness_factor",
     "step_stiffness_ratio",

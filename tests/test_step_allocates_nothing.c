@@ -62,7 +62,7 @@ static void manufactured_motion(void **state)
   test_rectangle(&s, m, (pw_real[]){0.0, 1.0, 0.0, 1.0}, 0.05);
   pw_body_force_param *f = pw_scene_add_effect(&s, "body_force");
   f->body = 0;
-  f->amplitude = 0.01;
+  f->amplitude_m = 0.01;
   for (int side = PW_SIDE_BOTTOM; side <= PW_SIDE_RIGHT; side++) {
     test_roller(&s, side);
   }

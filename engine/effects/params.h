@@ -81,9 +81,9 @@ typedef enum pw_mms_course { PW_MMS_SINE, PW_MMS_ONE_MINUS_COSINE } pw_mms_cours
 /** body_force: the body force of a manufactured motion of a neo-Hookean body. */
 typedef struct pw_body_force_param {
   int body;
-  int kind;            /**< pw_body_force_kind */
-  pw_real amplitude;   /**< m (axis aligned, ring), rad (vortex) */
-  int course;          /**< pw_mms_course of the vortex */
+  int kind;                          /**< pw_body_force_kind */
+  pw_real amplitude_m, rotation_rad; /**< axis aligned and ring; vortex */
+  int course;                        /**< pw_mms_course of the vortex */
   pw_real origin_m[2]; /**< lower left corner of the unit square; centre of the ring */
 } pw_body_force_param;
 

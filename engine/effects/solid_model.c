@@ -80,8 +80,11 @@ static pw_status check_stress(const pw_scene *scene, const void *param)
 {
   const pw_solid_stress_param *p = param;
   for (int b = 0; b < scene->nbody; b++) {
+    if (p->body >= 0 && p->body != b) {
+      continue;
+    }
     const pw_material *model = scene->material[scene->body[b].material].model;
-    PW_REQUIRE((p->body >= 0 && p->body != b) || model->takes_initial_stress, PW_ERR_SCENE,
+    PW_REQUIRE(model->takes_initial_stress, PW_ERR_SCENE,
                "body: the material of '%s' (%s) cannot start from a stress", scene->body[b].name,
                model->name);
   }
