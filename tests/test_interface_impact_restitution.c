@@ -58,6 +58,18 @@ static void restitution_lies_in_the_bands(void **state)
   }
 }
 
+/* Near the limit of stability (dt omega = 2): highest 2.61. Backwards in time an impact is one with
+ * the reciprocal restitution, so the lowest is 1 / 2.61 = 0.383 (the catalogue's scan found 0.39). */
+static void restitution_near_the_limit(void **state)
+{
+  (void)state;
+  pw_real low, high;
+  bands(1.9, &low, &high);
+  print_message("dt omega = 1.9: restitution %.5f to %.5f\n", low, high);
+  assert_near(high, 2.61, 0.5e-2);
+  assert_relative(low * high, 1.0, 2e-3);
+}
+
 static void default_step_keeps_energy(void **state)
 {
   (void)state;
@@ -79,6 +91,7 @@ int main(void)
 {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(restitution_lies_in_the_bands),
+      cmocka_unit_test(restitution_near_the_limit),
       cmocka_unit_test(default_step_keeps_energy),
       cmocka_unit_test(depth_and_time_are_exact),
   };
