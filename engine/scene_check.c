@@ -227,12 +227,13 @@ static pw_status check_ways(const pw_scene_body *b)
   return PW_OK;
 }
 
+/* Without bound when the grid has no plan, which is reported with the grid. */
 static pw_real largest_cell(const pw_scene *s)
 {
   pw_axis_plan plan[2] = {{.largest = s->grid.cell_m}, {.largest = s->grid.cell_m}};
   for (int a = 0; a < 2 && pw_grid_is_graded(&s->grid); a++) {
     if (pw_mesh_plan(&s->grid, a, &plan[a]) != PW_OK) {
-      return s->grid.cell_m; /* reported with the grid */
+      return PW_HUGE;
     }
   }
   return pw_max(plan[0].largest, plan[1].largest);

@@ -120,9 +120,9 @@ pw_status pw_structure_check(const pw_scene *scene, int body)
              rod ? "a pile" : "a pile, a disc or a rectangle");
   PW_REQUIRE(b->nrefine == 0, PW_ERR_SCENE, "refine: a body of kind %s has no points",
              kind[b->kind]);
-  PW_REQUIRE(!rod || scene->material[b->material].model == pw_material_find("linear_elastic"),
-             PW_ERR_SCENE, "material: a rod is linear_elastic, '%s' is %s",
-             scene->material[b->material].name, scene->material[b->material].model->name);
+  const pw_scene_material *m = &scene->material[b->material];
+  PW_REQUIRE(!rod || !m->model || m->model == pw_material_find("linear_elastic"), PW_ERR_SCENE,
+             "material: a rod is linear_elastic, '%s' is %s", m->name, m->model->name);
   PW_REQUIRE(b->surface_segment_m <= scene->grid.cell_m * (1.0 + 1e-9), PW_ERR_SCENE,
              "surface_segment_m = %g m must not be longer than a cell, %g m", b->surface_segment_m,
              scene->grid.cell_m);

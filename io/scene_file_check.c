@@ -98,7 +98,8 @@ static bool effect_read(const pw_reader *r, int i, bool *by_place)
 {
   const pw_scene *s = r->scene;
   const pw_scene_effect *e = &s->effect[i];
-  bool good = r->effect[i].clean && r->grid.clean;
+  const bool method = r->method.clean || !r->method.node; /* implicit steps know other effects */
+  bool good = r->effect[i].clean && r->grid.clean && method;
   for (const pw_key *k = e->type->keys; k && k->name; k++) {
     if (k->type != PW_KEY_BODY) {
       continue;

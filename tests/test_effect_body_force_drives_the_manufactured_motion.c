@@ -66,20 +66,12 @@ static void other_materials_are_refused(void **state)
   test_rectangle(&scene, m, (pw_real[4]){0.0, 1.0, 0.0, 1.0}, 0.5);
   pw_body_force_param *f = pw_scene_add_effect(&scene, "body_force");
   f->body = 0;
-  f->amplitude_m = 0.1;
   const pw_effect *type = pw_effect_find("body_force");
   assert_int_equal(type->check(&scene, f), PW_ERR_SCENE);
   scene.body[0].material = test_neo_hookean(&scene, 1e7, 4e6, 1e3);
   assert_int_equal(type->check(&scene, f), PW_OK);
   scene.geometry = PW_AXI;
   assert_int_equal(type->check(&scene, f), PW_ERR_SCENE);
-  scene.geometry = PW_PLANE;
-  f->kind = PW_MMS_VORTEX; /* turns by an angle */
-  assert_int_equal(type->check(&scene, f), PW_ERR_SCENE);
-  f->amplitude_m = 0.0;
-  assert_int_equal(type->check(&scene, f), PW_ERR_SCENE);
-  f->rotation_rad = 0.1;
-  assert_int_equal(type->check(&scene, f), PW_OK);
 }
 
 int main(void)

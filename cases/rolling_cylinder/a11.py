@@ -70,7 +70,7 @@ def run(a, bodies, scene):
                "--quiet", "--threads", "1", *settings(bodies, a.cell)]
     done = subprocess.run(command, capture_output=True, text=True, check=False)
     if done.returncode != 0:
-        sys.exit(f"{' '.join(command)}\n{done.stderr}")
+        raise RuntimeError(f"{' '.join(command)}\n{done.stderr}")
     return folder
 
 
@@ -123,9 +123,13 @@ def main():
     with concurrent.futures.ThreadPoolExecutor(a.jobs) as pool:
         pending = [(bodies, motion, pool.submit(run, a, bodies, motion[0]))
                    for bodies in a.only for motion in MOTIONS]
-        for bodies, motion, folder in pending:
-            within = report(bodies, motion, folder.result())
-            good = good and (within or bodies != "rigid")
+        try:
+            for bodies, motion, folder in pending:
+                within = report(bodies, motion, folder.result())
+                good = good and (within or bodies != "rigid")
+        except RuntimeError as failed:
+            pool.shutdown(wait=False, cancel_futures=True)
+            sys.exit(str(failed))
     sys.exit(0 if good else 1)
 
 
