@@ -26,8 +26,11 @@ typedef enum pw_stage {
   PW_STAGE_WEIGHT,     /**< the same, each record by itself: a part of them (pw_part_hook_fn) */
   PW_STAGE_NODE_TOTAL, /**< the same, by what all others together have added */
   PW_STAGE_CONSTRAINT, /**< change velocities at t(n+1); FORCE slots hold v(n) */
+  PW_STAGE_MASS, /**< method.mass_terms: 2: what else than points has mass (engine/full_mass.h) adds M
+                      times the velocities in slot FORCE to slot REMAP of the scratch records */
   PW_STAGE_REMAP_P2G, /**< MUSL: other momenta than the points' into slot REMAP; FORCE holds v(n) */
-  PW_STAGE_REMAP,     /**< MUSL: the same constraints on the remapped velocities */
+  PW_STAGE_REMAP,     /**< the same constraints on the velocities in slot sim->node_slot: remapped
+                           ones (MUSL), or v(n+1) with another term of the mass matrix */
   PW_STAGE_MOTION,    /**< once a step, velocities are final: sums over a part of the records */
   PW_STAGE_MESH,      /**< points and interfaces have moved */
   PW_STAGE_END,       /**< probes, records; sim->time is t(n+1) */
@@ -66,6 +69,7 @@ struct pw_effect {
   const char *name;           /**< key of its section in the scene file */
   const char *brief;          /**< one line for `pilewright list` */
   bool many;                  /**< the section is a list; each entry is one instance */
+  bool lumped_only;           /**< not with method.mass_terms > 1 */
   bool own_velocity_fields;   /**< asks for one velocity field per body (contact) */
   const char *structure_key;  /**< its key that may name a body without points; NULL: none may */
   uint64_t point_fields;      /**< bits of pw_field_id to allocate */

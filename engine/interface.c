@@ -253,6 +253,20 @@ static pw_idx nearest_carried(const pw_interface *line, pw_idx k)
   return -1;
 }
 
+void pw_interface_mass(const pw_interface *line, pw_real *rec)
+{
+  for (pw_idx k = 0; k < line->n; k++) {
+    const pw_interface_node *a = &line->node[k];
+    pw_real v[2];
+    gather(line, rec + PW_NODE_FORCE, a->shape, a, v);
+    for (int j = 0; j < 4; j++) {
+      pw_real *r = rec + record(line, a->node, j), m = a->shape[j] * a->mass;
+      r[PW_NODE_REMAP] += m * v[0];
+      r[PW_NODE_REMAP + 1] += m * v[1];
+    }
+  }
+}
+
 void pw_interface_move(pw_interface *line, const pw_real *rec, int slot, pw_real dt)
 {
   for (pw_idx k = 0; k < line->n; k++) {

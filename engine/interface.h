@@ -136,6 +136,9 @@ void pw_interface_weights(pw_interface *line, const pw_real *rec, pw_real cut_of
  *  line is conserved. @param[in] increments slot FORCE holds dv; else v(n), and slot VEL v(n+1) */
 void pw_interface_velocity(pw_interface *line, const pw_real *rec, bool increments);
 
+/** @brief Add the nodes' mass times the velocity that slot FORCE has there to slot REMAP. */
+void pw_interface_mass(const pw_interface *line, pw_real *rec);
+
 /** @brief Add momentum to slot REMAP. */
 void pw_interface_remap(const pw_interface *line, pw_real *rec);
 

@@ -39,6 +39,9 @@ pw_status pw_rates_create(pw_sim *sim)
 {
   pw_rates *r;
   const pw_idx nblock = sim->blocks.nblock;
+  if (sim->scene.method.step_ratio_max <= 1) {
+    return PW_OK;
+  }
   PW_TRY(pw_mem_alloc("rates", 1, sizeof *r, &r));
   sim->rates = r;
   while ((2 << r->levels) <= sim->scene.method.step_ratio_max && r->levels < PW_MAX_LEVELS) {

@@ -50,7 +50,7 @@ typedef struct pw_rates {
   int cycles;                       /**< since the blocks were last divided */
 } pw_rates;
 
-/** @brief Memory for a scene with method.step_ratio_max > 1; all blocks have level 0.
+/** @brief Memory, if the scene has method.step_ratio_max > 1; all blocks have level 0.
  *  @return PW_OK; PW_ERR_MEMORY. */
 pw_status pw_rates_create(pw_sim *sim);
 void pw_rates_destroy(pw_sim *sim);

@@ -72,6 +72,9 @@ const pw_key pw_scene_keys_method[] = {
    "nodes with less than this part of a full cell's mass stay at rest"},
   {"noise_damping_per_s", PW_KEY_REAL, AT(method.noise_damping_per_s), 0, 1e6, "0", NULL, NULL,
    "rate at which velocities of points that the grid does not see die out (a share of PIC)"},
+  {"mass_terms", PW_KEY_INT, AT(method.mass_terms), 1, 2, "1", NULL, NULL,
+   "terms of the full mass matrix's inverse for the points' accelerations; 1: lumped masses; 2: less "
+   "error, best with usl"},
   {"step_ratio_max", PW_KEY_INT, AT(method.step_ratio_max), 1, 16, "1", NULL, NULL,
    "most short steps that blocks of slow points take at once; 1: all step together"},
   {"block_elements", PW_KEY_INT, AT(method.block_elements), 0, 1e6, "0", NULL, NULL,

@@ -93,6 +93,7 @@ struct pw_scene {
     pw_real domain_aspect_max;   /**< longest to shortest half-side of a domain; 0: no limit */
     pw_real mass_cut_off;        /**< of the mass of a full cell's node; nodes below are passive */
     pw_real noise_damping_per_s; /**< rate at which points' velocities approach the grid's */
+    int mass_terms;              /**< of the full mass matrix's inverse; 1: lumped masses */
     int step_ratio_max;          /**< most short steps that slow points take at once; 1: none */
     int block_elements;          /**< elements in a METIS block; 0: chosen from the grid */
   } method;

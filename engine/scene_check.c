@@ -92,6 +92,23 @@ pw_status pw_scene_check_time(const pw_scene *s)
   return PW_OK;
 }
 
+/* Who reads or changes nodal velocities in a way that the further terms would have to follow. */
+static pw_status check_mass_terms(const pw_scene *s)
+{
+  const int terms = s->method.mass_terms;
+  PW_REQUIRE(terms <= 1 || s->method.update != PW_IMPLICIT, PW_ERR_SCENE,
+             "mass_terms = %d: implicit steps have the full mass matrix", terms);
+  PW_REQUIRE(terms <= 1 || s->method.step_ratio_max <= 1, PW_ERR_SCENE,
+             "mass_terms = %d: not with step_ratio_max = %d", terms, s->method.step_ratio_max);
+  PW_REQUIRE(terms <= 1 || !(s->grid.paired_rows_x_m > 0.0), PW_ERR_SCENE,
+             "mass_terms = %d: not with grid: paired_rows_x_m", terms);
+  for (int e = 0; terms > 1 && e < s->neffect; e++) {
+    PW_REQUIRE(!s->effect[e].type->lumped_only, PW_ERR_SCENE,
+               "mass_terms = %d: %s knows lumped masses only", terms, s->effect[e].type->name);
+  }
+  return PW_OK;
+}
+
 pw_status pw_scene_check_method(const pw_scene *s)
 {
   const int ratio = s->method.step_ratio_max;
@@ -107,7 +124,7 @@ pw_status pw_scene_check_method(const pw_scene *s)
     PW_REQUIRE(strcmp(s->effect[e].type->name, "body_force") != 0, PW_ERR_SCENE,
                "step_ratio_max = %d: body_force needs all points to step together", ratio);
   }
-  return PW_OK;
+  return check_mass_terms(s);
 }
 
 pw_status pw_scene_check_grid_implicit(const pw_scene *s)

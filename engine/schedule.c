@@ -27,8 +27,9 @@ void pw_schedule_build(pw_sim *sim)
 {
   sim->schedule = (pw_schedule){0};
   for (int stage = 0; stage < PW_STAGE_COUNT; stage++) {
+    const bool runs = stage != PW_STAGE_MASS || sim->full_mass;
     sim->schedule.start[stage] = sim->schedule.n;
-    for (int rank = 0; pw_effect_at(rank); rank++) {
+    for (int rank = 0; runs && pw_effect_at(rank); rank++) {
       for (int e = 0; e < sim->scene.neffect; e++) {
         if (sim->scene.effect[e].type == pw_effect_at(rank)) {
           append_effect(sim, e, (pw_stage)stage);
@@ -85,8 +86,8 @@ void pw_schedule_run_part(const pw_sim *sim, pw_stage stage, int part, int parts
 void pw_sim_schedule_text(const pw_sim *sim, char *text, size_t size)
 {
   static const char *const names[PW_STAGE_COUNT] = {
-      "start",      "begin",     "p2g",   "node_force", "weight", "node_total",
-      "constraint", "remap_p2g", "remap", "motion",     "mesh",   "end"};
+      "start", "begin",     "p2g",   "node_force", "weight", "node_total", "constraint",
+      "mass",  "remap_p2g", "remap", "motion",     "mesh",   "end"};
   size_t used = 0;
   if (size > 0) {
     text[0] = '\0';

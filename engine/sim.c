@@ -9,6 +9,7 @@
 #include "engine/bodies.h"
 #include "engine/core/mem.h"
 #include "engine/domain.h"
+#include "engine/full_mass.h"
 #include "engine/rates.h"
 #include "engine/schedule.h"
 #include "engine/sim_report.h"
@@ -324,9 +325,8 @@ static pw_status build(pw_sim *sim)
   PW_TRY(create_blocks(sim, reach_cells));
   PW_TRY(pw_nodes_create(sim->mesh.nnode, field_count(scene), &sim->nodes));
   bind_transfer(sim);
-  if (scene->method.step_ratio_max > 1) {
-    PW_TRY(pw_rates_create(sim));
-  }
+  PW_TRY(pw_rates_create(sim));
+  PW_TRY(pw_full_mass_create(sim));
   init_materials(sim);
   PW_TRY(pw_update_sort(sim));
   pw_real density = PW_HUGE;
@@ -384,6 +384,7 @@ void pw_sim_destroy(pw_sim **sim_ptr)
   }
   pw_structures_destroy(sim);
   pw_quad_steps_destroy(sim);
+  pw_full_mass_destroy(sim);
   pw_rates_destroy(sim);
   pw_points_destroy(&sim->points);
   pw_nodes_destroy(&sim->nodes);

@@ -91,7 +91,8 @@ struct pw_sim {
   struct pw_fbar_cells *fbar; /**< engine/fbar.h; NULL: off */
   struct pw_quad_steps *quad; /**< engine/step_implicit.h; NULL: explicit steps */
   struct pw_rates *rates;     /**< engine/rates.h; NULL: all points take the same steps */
-  int node_slot;    /**< PW_NODE_VEL or PW_NODE_REMAP: what a constraint hook is to change */
+  struct pw_full_mass *full_mass; /**< engine/full_mass.h; NULL: lumped masses */
+  int node_slot;    /**< PW_NODE_VEL or PW_NODE_REMAP: what a REMAP hook is to change */
   bool sort_needed; /**< points are not in the order of their blocks */
 
   pw_energy energy;       /**< kinetic: at the end of the last step */

@@ -5,6 +5,7 @@
 
 #include "engine/assemble.h"
 #include "engine/fbar.h"
+#include "engine/full_mass.h"
 #include "engine/pairs.h"
 #include "engine/ranges.h"
 #include "engine/rates.h"
@@ -23,8 +24,8 @@ static void lap(pw_sim *sim, pw_timer stage, double *since)
 }
 
 /* No radial motion on the axis of symmetry: nodes at r = 0 of a part of the records, the slot of
- * the stage and, at the same time, v(n). */
-static void axis_condition(pw_sim *sim, int part, int parts)
+ * the stage and, with v(n+1), v(n). */
+static void axis_condition(pw_sim *sim, pw_stage stage, int part, int parts)
 {
   const int slot = sim->node_slot;
   pw_idx first, last;
@@ -41,7 +42,7 @@ static void axis_condition(pw_sim *sim, int part, int parts)
       }
       pw_real *r = rec + (pw_off)node * PW_NODE;
       r[slot] = 0.0;
-      r[PW_NODE_FORCE] = slot == PW_NODE_VEL ? 0.0 : r[PW_NODE_FORCE];
+      r[PW_NODE_FORCE] = stage == PW_STAGE_CONSTRAINT ? 0.0 : r[PW_NODE_FORCE];
     }
   }
 }
@@ -49,7 +50,7 @@ static void axis_condition(pw_sim *sim, int part, int parts)
 /* Constraints of a part of the records, whose velocities have just been made. */
 static void constrain_part(pw_sim *sim, pw_stage stage, int part, int parts)
 {
-  axis_condition(sim, part, parts);
+  axis_condition(sim, stage, part, parts);
   pw_schedule_run_part(sim, stage, part, parts);
 }
 
@@ -142,6 +143,29 @@ static pw_status move_nodes(pw_sim *sim)
     pw_pairs_collect(sim, PW_NODE_MASS, PW_NODE_REMAP);
   }
   pw_for_parts(sim->threads, new_velocities, sim);
+  return PW_OK;
+}
+
+static void first_term(void *ctx, int part, int parts)
+{
+  pw_full_mass_first_part(ctx, part, parts);
+}
+
+static void second_term(void *ctx, int part, int parts)
+{
+  pw_full_mass_second_part(ctx, part, parts);
+  constrain_part(ctx, PW_STAGE_REMAP, part, parts);
+}
+
+/* From the lumped masses' increments of velocity towards those of the full mass matrix. */
+static pw_status full_mass(pw_sim *sim, double *clock)
+{
+  const pw_pass pass = {NULL, pw_block_full_mass, second_term, false};
+  pw_for_parts(sim->threads, first_term, sim);
+  PW_TRY(pw_schedule_run(sim, PW_STAGE_MASS));
+  pw_assemble_pass(&sim->blocks, sim->threads, &pass, sim);
+  PW_TRY(pw_schedule_run(sim, PW_STAGE_REMAP));
+  lap(sim, PW_TIMER_REMAP, clock);
   return PW_OK;
 }
 
@@ -246,14 +270,18 @@ pw_status pw_step_explicit(pw_sim *sim)
     PW_TRY(stress_first(sim, &clock));
   }
   PW_TRY(grid_velocity(sim, &clock));
+  if (sim->full_mass) {
+    PW_TRY(full_mass(sim, &clock));
+  }
   if (update == PW_MUSL) {
     PW_TRY(remap_velocity(sim, &clock));
-    pass.slot = PW_NODE_REMAP;
   } else {
     const pw_pass velocity = {increment_nodes, pw_block_velocity, NULL, true};
+    sim->node_slot = sim->full_mass ? PW_NODE_REMAP : PW_NODE_VEL;
     pw_assemble_pass(&sim->blocks, sim->threads, &velocity, sim);
     lap(sim, PW_TIMER_REMAP, &clock);
   }
+  pass.slot = sim->node_slot;
   update_points(sim, &pass);
   lap(sim, PW_TIMER_G2P_STRESS, &clock);
   pw_structures_drift(sim);

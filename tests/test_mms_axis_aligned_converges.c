@@ -34,11 +34,12 @@ static void mms_scene(pw_scene *s, int basis, int update, int n)
 }
 
 /* The error at the end of the run, or at the step that failed. */
-static double mms_error(int basis, int update, int n, pw_status *status)
+static double mms_error(int basis, int update, int terms, int n, pw_status *status)
 {
   static pw_scene s;
   pw_record out;
   mms_scene(&s, basis, update, n);
+  s.method.mass_terms = terms;
   pw_sim *sim = test_sim(&s, 1);
   for (*status = PW_OK; *status == PW_OK && sim->time < 0.02 * (1.0 - 1e-12);) {
     *status = pw_sim_step(sim, 0.02 - sim->time);
@@ -59,7 +60,7 @@ static void cpdi_is_of_second_order(void **state)
   double error[4];
   for (int k = 0; k < 4; k++) {
     pw_status status;
-    error[k] = mms_error(PW_CPDI, PW_USL, 8 << k, &status);
+    error[k] = mms_error(PW_CPDI, PW_USL, 1, 8 << k, &status);
     assert_int_equal(status, PW_OK);
     print_message("cpdi n %d: %.4e, independent program %.4e\n", 8 << k, error[k], want[k]);
     assert_relative(error[k], want[k], 0.05);
@@ -73,11 +74,29 @@ static void musl_converges_as_well(void **state)
 {
   (void)state;
   pw_status status[2];
-  double coarse = mms_error(PW_CPDI, PW_MUSL, 16, &status[0]);
-  double fine = mms_error(PW_CPDI, PW_MUSL, 32, &status[1]);
+  double coarse = mms_error(PW_CPDI, PW_MUSL, 1, 16, &status[0]);
+  double fine = mms_error(PW_CPDI, PW_MUSL, 1, 32, &status[1]);
   print_message("cpdi, musl: %.4e, %.4e, rate %.3f\n", coarse, fine, log2(coarse / fine));
   assert_true(status[0] == PW_OK && status[1] == PW_OK);
   assert_true(log2(coarse / fine) >= 1.9);
+}
+
+/* Two terms of the mass matrix: half the error. */
+static void second_term_halves_the_error(void **state)
+{
+  (void)state;
+  for (int update = PW_MUSL; update <= PW_USL; update++) {
+    double two[2];
+    for (int k = 0; k < 2; k++) {
+      pw_status status[2];
+      double one = mms_error(PW_CPDI, update, 1, 16 << k, &status[0]);
+      two[k] = mms_error(PW_CPDI, update, 2, 16 << k, &status[1]);
+      print_message("update %d, n %d: %.4e, with two terms %.4e\n", update, 16 << k, one, two[k]);
+      assert_true(status[0] == PW_OK && status[1] == PW_OK);
+      assert_true(two[k] < 0.51 * one);
+    }
+    assert_true(log2(two[0] / two[1]) >= 1.9);
+  }
 }
 
 /* uGIMP's fixed domains stop tiling the body and its rate falls; standard MPM does not converge:
@@ -89,8 +108,8 @@ static void other_bases_are_reported(void **state)
   double last[2] = {0.0, 0.0};
   for (int k = 0; k < 3; k++) {
     pw_status status[2];
-    double g = mms_error(PW_UGIMP, PW_USL, 8 << k, &status[0]);
-    double l = mms_error(PW_LINEAR, PW_USL, 8 << k, &status[1]);
+    double g = mms_error(PW_UGIMP, PW_USL, 1, 8 << k, &status[0]);
+    double l = mms_error(PW_LINEAR, PW_USL, 1, 8 << k, &status[1]);
     print_message("n %d: ugimp %.3e (independent program %.3e), linear %.3e (%.3e), %s\n", 8 << k,
                   g, ugimp[k], l, linear[k],
                   status[1] == PW_OK ? "non-convergent" : pw_status_text(status[1]));
@@ -107,6 +126,7 @@ int main(void)
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(cpdi_is_of_second_order),
       cmocka_unit_test(musl_converges_as_well),
+      cmocka_unit_test(second_term_halves_the_error),
       cmocka_unit_test(other_bases_are_reported),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);

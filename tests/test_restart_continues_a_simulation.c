@@ -64,6 +64,8 @@ static void an_elastic_block_in_flight(void **unused)
     scene.method.block_elements = 20;
     scene.time.cfl = 0.2;
     check_scene(&scene);
+    scene.method.mass_terms = 2;
+    check_scene(&scene);
   }
 }
 

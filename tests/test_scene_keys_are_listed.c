@@ -16,6 +16,7 @@ static const char *const dimensionless[] = {
     "points_per_cell",
     "rod_elements",
     "mass_cut_off",
+    "mass_terms",
     "step_ratio_max",
     "block_elements",
     "poisson_ratio",

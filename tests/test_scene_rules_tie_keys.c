@@ -126,6 +126,29 @@ static void rows_in_pairs_need_a_fine_zone(void **state)
               "contact_frictional or contact_penalty");
 }
 
+static void two_terms_of_the_mass_matrix_need_what_knows_them(void **state)
+{
+  (void)state;
+  s.method.mass_terms = 2;
+  assert_ok(pw_scene_check(&s));
+  s.method.step_ratio_max = 4;
+  expect_rule("method: mass_terms = 2: not with step_ratio_max = 4");
+  s.method.step_ratio_max = 1;
+  s.method.update = PW_IMPLICIT;
+  expect_rule("method: mass_terms = 2: implicit steps have the full mass matrix");
+  s.method.update = PW_USL;
+  s.method.basis = PW_CPDI;
+  s.grid.growth = 1.2;
+  s.grid.fine_x_m[1] = s.grid.fine_y_m[1] = 1.5;
+  s.grid.paired_rows_x_m = 1.5;
+  expect_rule("method: mass_terms = 2: not with grid: paired_rows_x_m");
+  s.grid.paired_rows_x_m = 0.0;
+  pw_contact_frictional_param *c = pw_scene_add_effect(&s, "contact_frictional");
+  c->master = 0;
+  c->slave = 1;
+  expect_rule("method: mass_terms = 2: contact_frictional knows lumped masses only");
+}
+
 static void names_are_unique(void **state)
 {
   (void)state;
@@ -288,6 +311,7 @@ int main(void)
       RULE(counts_are_limited),
       RULE(the_grid_is_whole_and_of_a_size),
       RULE(rows_in_pairs_need_a_fine_zone),
+      RULE(two_terms_of_the_mass_matrix_need_what_knows_them),
       RULE(names_are_unique),
       RULE(bodies_lie_in_the_grid),
       RULE(shapes_are_sound),

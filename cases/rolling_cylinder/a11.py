@@ -2,16 +2,20 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """The figures of a rigid cylinder (verification A11) beside those of the penalty contact.
 
-usage: a11.py [--only rigid,soft,equal] [--cell M] [--out DIR] [--program FILE] [--jobs N]
+usage: a11.py [--only rigid,soft,equal] [--cell M] [--mass-terms N] [--out DIR] [--program FILE]
+              [--jobs N]
 
-Cells of 0.1 m, segments of a quarter of a cell, lines without mass; gravity turns over 0.6 s, so
-that the cylinder does not bounce. Rolling (45 degrees) and sliding (60 degrees), each with
+USL with two terms of the mass matrix; segments of a quarter of a cell, lines without mass; gravity
+turns over 0.6 s, so that the cylinder does not bounce. Rolling (45 degrees) and sliding (60
+degrees), each with
 
-rigid: bodies and contact ten times as stiff as the thesis'; exit status 1 if one of the figures is
-       outside its tolerance. Some 4 minutes a run.
-soft:  the thesis' bodies; 80 s a run. An elastic cylinder has other figures: README.
+rigid: bodies and contact ten times as stiff as the thesis', cells of 0.1 m. Some 5 minutes a run.
+soft:  the thesis' bodies, cells of 0.16 m to roll and of 0.08 m to slide; 30 s and 4 minutes. An
+       elastic cylinder has other figures than a rigid one, which finer cells bring out: README.
 equal: the plane as soft as the cylinder, so that friction does not shift the normal pressure.
 
+Exit status 1 if a figure of the rigid or the soft cylinder is outside its tolerance. Of the soft one
+the angle of fitted accelerations counts; the one with the start is printed beside it.
 Python's standard library only.
 """
 import argparse
@@ -29,6 +33,7 @@ TURN = 0.6  # s, some two periods of the soft cylinder on its contact
 # scene, tilt, friction, tolerances of fitted acceleration, turning and mean normal force
 MOTIONS = [("penalty_no_slip", 45.0, 0.495, (0.01, 0.005, 0.005)),
            ("penalty_slip", 60.0, 0.286, (0.01, 0.02, 0.005))]
+SOFT_CELLS = {"penalty_no_slip": 0.16, "penalty_slip": 0.08}  # m; others have 0.1
 # bulk modulus of cylinder and plane, Pa (the shear modulus is half of it); contact stiffness, Pa/m
 BODIES = {"rigid": (6e7, 6e8, 1e9), "soft": (6e6, 6e7, 1e8), "equal": (6e6, 6e6, 1e8)}
 
@@ -37,7 +42,8 @@ def arguments():
     p = argparse.ArgumentParser(description=__doc__,
                                 formatter_class=argparse.RawDescriptionHelpFormatter)
     p.add_argument("--only", default="soft,rigid", help="of rigid, soft, equal (%(default)s)")
-    p.add_argument("--cell", type=float, default=0.1, help="m (%(default)s)")
+    p.add_argument("--cell", type=float, help="m (0.1; soft 0.16 and 0.08)")
+    p.add_argument("--mass-terms", type=int, default=2, help="of method.mass_terms (%(default)s)")
     p.add_argument("--out", type=pathlib.Path, default=pathlib.Path("out/a11"))
     p.add_argument("--program", default=str(HERE.parents[1] / "build" / "pilewright"))
     p.add_argument("--jobs", type=int, default=2, help="runs at a time, one thread each")
@@ -49,9 +55,9 @@ def arguments():
     return a
 
 
-def settings(bodies, cell):
+def settings(bodies, cell, terms):
     rubber, rock, contact = BODIES[bodies]
-    keys = {"grid.cell_m": cell, "contact_penalty.segment_m": cell / 4,
+    keys = {"method.update": "usl", "method.mass_terms": terms, "grid.cell_m": cell, "contact_penalty.segment_m": cell / 4,
             "contact_penalty.thickness_m": 0, "gravity.tilt_over_s": TURN,
             "contact_penalty.normal_stiffness_pa_m": contact,
             "contact_penalty.tangential_stiffness_pa_m": contact,
@@ -66,8 +72,9 @@ def settings(bodies, cell):
 
 def run(a, bodies, scene):
     folder = a.out / f"{bodies}_{scene}"
+    cell = a.cell or (SOFT_CELLS[scene] if bodies == "soft" else 0.1)
     command = [a.program, "run", str(HERE / f"{scene}.yaml"), "--out", str(folder), "--force",
-               "--quiet", "--threads", "1", *settings(bodies, a.cell)]
+               "--quiet", "--threads", "1", *settings(bodies, cell, a.mass_terms)]
     done = subprocess.run(command, capture_output=True, text=True, check=False)
     if done.returncode != 0:
         raise RuntimeError(f"{' '.join(command)}\n{done.stderr}")
@@ -94,17 +101,17 @@ def elastic_missing(bodies, tilt, friction):
 
 
 def report(bodies, motion, folder):
-    """Print a run's figures; whether all of them are within their tolerances."""
+    """Print a run's figures; whether all that have a tolerance are within it."""
     scene, tilt, friction, (speed, turn, push) = motion
     f = fit.fitted(str(folder), tilt, friction, TURN)
     figures = [("fitted acceleration", f["a"] / f["exact_a"], speed),
-               ("turned angle over way", f["turning"] / f["exact_turning"], turn),
-               ("the same, of fitted accelerations", f["late_turning"] / f["exact_late_turning"],
-                turn),
+               ("turned angle over way", f["late_turning"] / f["exact_late_turning"], turn),
                ("mean normal force", f["push"], push)]
-    outside = [abs(ratio - 1.0) > tolerance for _, ratio, tolerance in figures]
-    for (what, ratio, tolerance), out in zip(figures, outside):
-        print(f"{bodies:6} {scene:16} {what:33} {ratio:.4f}  1 +- {tolerance:<6g}"
+    whole = ("the same with the start", f["turning"] / f["exact_turning"], turn)
+    counted = figures + [whole] * (bodies == "rigid")
+    for what, ratio, tolerance in figures + [whole]:
+        out = abs(ratio - 1.0) > tolerance
+        print(f"{bodies:6} {scene:16} {what:23} {ratio:.4f}  1 +- {tolerance:<6g}"
               f"{' outside' if out else ''}")
     low, high = f["push_range"]
     print(f"{bodies:6} {scene:16} normal force {low:.2f} to {high:.2f} of m g cos(tilt); "
@@ -114,7 +121,7 @@ def report(bodies, motion, folder):
         print(f"{bodies:6} {scene:16} of which by elasticity: normal force ahead "
               f"{1e3 * ahead:.2f} mm, shorter arm {1e3 * shorter:.2f} mm")
     sys.stdout.flush()
-    return not any(outside)
+    return all(abs(ratio - 1.0) <= tolerance for _, ratio, tolerance in counted)
 
 
 def main():
@@ -126,7 +133,7 @@ def main():
         try:
             for bodies, motion, folder in pending:
                 within = report(bodies, motion, folder.result())
-                good = good and (within or bodies != "rigid")
+                good = good and (within or bodies == "equal")
         except RuntimeError as failed:
             pool.shutdown(wait=False, cancel_futures=True)
             sys.exit(str(failed))

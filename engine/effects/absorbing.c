@@ -487,6 +487,7 @@ const pw_effect pw_effect_absorbing = {
     .name = "absorbing",
     .brief = "sides of the grid that let waves out: dashpots and springs against creep",
     .many = true,
+    .lumped_only = true,
     .point_fields = PW_FIELD_BIT(PW_FIELD_WAVE_SPEED),
     .keys = keys,
     .hooks = hooks,

@@ -141,19 +141,23 @@ static void hold(const pw_sim *sim, void *ctx, int part, int parts)
   }
 }
 
+/* Remapped velocities give the points no momentum; those of a further term of the mass matrix do. */
 static void hold_remapped(const pw_sim *sim, void *ctx, int part, int parts)
 {
   const boundary *c = ctx;
+  const bool counts = sim->node_slot == PW_NODE_VEL && sim->full_mass;
   int first, last;
   pw_idx from, to;
   pw_effect_fields(sim, c->param->body, &first, &last);
   pw_nodes_part(&sim->nodes, part, parts, &from, &to);
   for (int f = first; f < last; f++) {
-    pw_real *rec = pw_nodes_field(&sim->nodes, f) + sim->node_slot;
+    pw_real *rec = pw_nodes_field(&sim->nodes, f), *gained = c->gained + 2 * (pw_off)f * c->n;
     for (pw_idx k = 0; k < c->n; k++) {
-      pw_real *v = rec + (pw_off)c->node[k] * PW_NODE;
+      pw_real *r = rec + (pw_off)c->node[k] * PW_NODE, *v = r + sim->node_slot;
       for (int a = 0; a < 2 && pw_nodes_in_part(&sim->nodes, f, c->node[k], from, to); a++) {
-        v[a] = c->fix[a] ? c->velocity[a] : v[a];
+        const pw_real held = c->fix[a] ? c->velocity[a] : v[a];
+        gained[2 * k + a] += counts ? r[PW_NODE_MASS] * (v[a] - held) : 0.0;
+        v[a] = held;
       }
     }
   }

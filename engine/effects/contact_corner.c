@@ -147,8 +147,7 @@ static pw_status move_line(pw_sim *sim, void *ctx)
     pw_interface_set_velocity(&c->own, sim->body[c->param->master].prescribed_v);
     pw_interface_move_rigid(&c->own, sim->dt);
   } else {
-    const bool musl = sim->scene.method.update == PW_MUSL;
-    pw_interface_move(&c->own, c->master_rec, musl ? PW_NODE_REMAP : PW_NODE_VEL, sim->dt);
+    pw_interface_move(&c->own, c->master_rec, sim->node_slot, sim->dt);
   }
   return PW_OK;
 }

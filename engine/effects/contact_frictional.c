@@ -415,6 +415,7 @@ const pw_effect pw_effect_contact_frictional = {
     .name = "contact_frictional",
     .brief = "two velocity fields, Coulomb friction at nodes (Giridharan 2016, 2.6.2)",
     .own_velocity_fields = true,
+    .lumped_only = true,
     .keys = keys,
     .hooks = hooks,
     .check = check,

@@ -3,6 +3,7 @@
 #include "engine/effects/contact_penalty.h"
 
 #include "engine/core/mem.h"
+#include "engine/full_mass.h"
 
 #define AT(member) offsetof(pw_contact_penalty_param, member)
 
@@ -107,6 +108,17 @@ static pw_status add_forces(pw_sim *sim, void *ctx)
   return PW_OK;
 }
 
+static pw_status scatter_mass(pw_sim *sim, void *ctx)
+{
+  pw_penalty *c = ctx;
+  pw_interface *line[2] = {&c->slave, &c->master};
+  for (int side = 0; side < 2; side++) {
+    const int field = sim->body[line[side]->body].field;
+    pw_interface_mass(line[side], pw_full_mass_field(sim->full_mass, field, sim->nodes.nnode));
+  }
+  return PW_OK;
+}
+
 static pw_status scatter_remap(pw_sim *sim, void *ctx)
 {
   (void)sim;
@@ -131,7 +143,7 @@ static pw_status move_lines(pw_sim *sim, void *ctx)
     if (!musl) {
       pw_interface_velocity(line[side], c->rec[side], true);
     }
-    pw_interface_move(line[side], c->rec[side], musl ? PW_NODE_REMAP : PW_NODE_VEL, sim->dt);
+    pw_interface_move(line[side], c->rec[side], sim->node_slot, sim->dt);
   }
   c->counts.released = 0.0;
   pw_interface_refine(&c->slave, &c->rule, &c->counts);
@@ -243,11 +255,9 @@ int pw_contact_outline(const pw_sim *sim, int which, pw_real *xy, int max)
 }
 
 static const pw_hook hooks[] = {
-    {PW_STAGE_P2G, scatter_lines},
-    {PW_STAGE_NODE_FORCE, add_forces},
-    {PW_STAGE_REMAP_P2G, scatter_remap},
-    {PW_STAGE_MESH, move_lines},
-    {0, NULL},
+    {PW_STAGE_P2G, scatter_lines}, {PW_STAGE_NODE_FORCE, add_forces},
+    {PW_STAGE_MASS, scatter_mass}, {PW_STAGE_REMAP_P2G, scatter_remap},
+    {PW_STAGE_MESH, move_lines},   {0, NULL},
 };
 
 const pw_effect pw_effect_contact_penalty = {
