@@ -16,6 +16,9 @@
  *   PW_NODE_REMAP, +1         0                0                         remapped velocity
  *   PW_NODE_ACTIVE            0                1 when mass > cut-off     same
  *
+ * With two terms of the mass matrix (engine/full_mass.h) VEL and the increment have the second term
+ * from before the remap on, and without remap REMAP keeps v(n+1) of lumped masses.
+ *
  * A field seldom fills the grid: the pile's has a tenth of its nodes. Loops run over groups of
  * PW_NODE_GROUP records that are in use, which are those within reach of an element that held a
  * point at the last sort (pw_nodes_reset, pw_nodes_use: engine/ranges.c) and those of interface

@@ -59,7 +59,8 @@ static void hash_grid(uint64_t *hash, const pw_scene *s)
   pw_hash_bytes(hash, &s->method.mass_cut_off, sizeof(pw_real));
   pw_hash_bytes(hash, &s->method.noise_damping_per_s, sizeof(pw_real));
   if (s->method.mass_terms > 1) {
-    pw_hash_bytes(hash, &s->method.mass_terms, sizeof s->method.mass_terms);
+    const int terms[2] = {'m', s->method.mass_terms}; /* not to be taken for the next key */
+    pw_hash_bytes(hash, terms, sizeof terms);
   }
   if (s->method.step_ratio_max > 1) { /* only scenes that use it have to agree on it */
     pw_hash_bytes(hash, &s->method.step_ratio_max, sizeof s->method.step_ratio_max);

@@ -163,10 +163,12 @@ static pw_status full_mass(pw_sim *sim, double *clock)
   const pw_pass pass = {NULL, pw_block_full_mass, second_term, false};
   pw_for_parts(sim->threads, first_term, sim);
   PW_TRY(pw_schedule_run(sim, PW_STAGE_MASS));
+  sim->full_mass->adding = true;
   pw_assemble_pass(&sim->blocks, sim->threads, &pass, sim);
-  PW_TRY(pw_schedule_run(sim, PW_STAGE_REMAP));
+  const pw_status status = pw_schedule_run(sim, PW_STAGE_REMAP);
+  sim->full_mass->adding = false;
   lap(sim, PW_TIMER_REMAP, clock);
-  return PW_OK;
+  return status;
 }
 
 /* Points to grid, forces, new nodal velocities under all constraints. */

@@ -180,6 +180,40 @@ static void reactions_are_what_the_points_gain(void **state)
   }
 }
 
+/* Two walls of different velocity meet at a node, and a wall holds nodes of a body whose motion is
+ * given: nothing is booked for what the other holds. No force acts in the first step. */
+static void walls_that_meet_are_booked_once(void **state)
+{
+  (void)state;
+  for (int update = PW_MUSL; update <= PW_USL; update++) {
+    static pw_scene s;
+    pw_scene_default(&s);
+    test_grid(&s, (double[]){0.0, 2.0, 0.0, 1.5}, 0.125);
+    int m = test_elastic(&s, 1e6, 0.3, 1000.0);
+    test_rectangle(&s, m, (double[]){0.0, 2.0, 0.0, 0.75}, 0.0625);
+    test_rectangle(&s, m, (double[]){0.0, 2.0, 0.75, 1.0}, 0.0625);
+    test_add_contact(&s, TEST_PENALTY, 1, 0, 0.3, 1e8, 0.0);
+    s.method.update = update;
+    s.method.mass_terms = 2;
+    pw_prescribed_motion_param *motion = pw_scene_add_effect(&s, "prescribed_motion");
+    motion->body = 1;
+    motion->velocity_m_s[0] = 0.3;
+    for (int side = PW_SIDE_BOTTOM; side <= PW_SIDE_RIGHT; side++) {
+      pw_boundary_param *b = pw_scene_add_effect(&s, "boundary");
+      *b = (pw_boundary_param){.side = side, .fix_x = true, .body = -1};
+      b->velocity_x_m_s = side == PW_SIDE_BOTTOM ? 0.5 : 0.0;
+    }
+    pw_sim *sim = test_sim(&s, 1);
+    assert_ok(pw_sim_step(sim, 0.0));
+    for (int k = 0; k <= PW_SIDE_RIGHT - PW_SIDE_BOTTOM; k++) {
+      char name[64];
+      snprintf(name, sizeof name, "boundary_%d_force_x_n", k);
+      assert_near(value_of(sim, name), 0.0, 1e-9);
+    }
+    pw_sim_destroy(&sim);
+  }
+}
+
 /* A disc that turns and flies through the grid with nothing touching it; spin over that at the
  * start, by its points' moment of momentum about its centre. */
 static double spin_left(int update, int terms, double h)
@@ -224,6 +258,7 @@ int main(void)
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(velocities_are_those_of_the_series),
       cmocka_unit_test(reactions_are_what_the_points_gain),
+      cmocka_unit_test(walls_that_meet_are_booked_once),
       cmocka_unit_test(a_free_disc_keeps_its_spin),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);

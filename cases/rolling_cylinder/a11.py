@@ -81,23 +81,56 @@ def run(a, bodies, scene):
     return folder
 
 
+def pressure_ahead(half, both, beta, friction, stiffness, pieces=120):
+    """How far ahead of the centre the normal force on a sliding elastic cylinder stands; m. Pieces of
+    constant pressure p on its skin, of which those that touch follow from
+
+        -2 / (pi E*) int p(s) ln|x - s| ds - beta friction / E* int p(s) sign(x - s) ds
+            + p / stiffness = depth - x^2 / (2 R)
+
+    (Johnson, Contact Mechanics, 1985, section 7.2, with the springs of the contact in series). Without
+    springs it is 8 k half / 3 with tan(pi k) = friction beta."""
+    force = math.pi * both * half**2 / (4.0 * fit.RADIUS)
+    width = 3.2 * half / pieces
+    place = [(i + 0.5) * width - 1.6 * half for i in range(pieces)]
+
+    def sunk(near, far):
+        logs = [z * (math.log(abs(z)) - 1.0) for z in (near + 0.5 * width, near - 0.5 * width)]
+        turn = beta * friction / both * math.copysign(width, near) if far else 0.0
+        return -2.0 / (math.pi * both) * (logs[0] - logs[1]) - turn
+
+    down = [[sunk(x - s, i != j) for j, s in enumerate(place)] for i, x in enumerate(place)]
+    touching = [i for i in range(pieces) if abs(place[i]) < 1.05 * half]
+    while True:
+        rows = [[down[i][j] + (1.0 / stiffness if i == j else 0.0) for j in touching] + [-1.0]
+                for i in touching] + [[width] * len(touching) + [0.0]]
+        *press, depth = fit.solve(rows, [-place[i]**2 / (2.0 * fit.RADIUS) for i in touching]
+                                  + [force])
+        p = dict(zip(touching, press))
+        now = [i for i in range(pieces)
+               if (p[i] > 0.0 if i in p else sum(down[i][j] * p[j] for j in p)
+                   < depth - place[i]**2 / (2.0 * fit.RADIUS))]
+        if now == touching:
+            return sum(p[i] * place[i] for i in p) / sum(p.values())
+        touching = now
+
+
 def elastic_missing(bodies, tilt, friction):
     """Moment that a sliding elastic cylinder lacks, over the normal force (m): how far that force
-    stands ahead (Johnson, Contact Mechanics, 1985, section 7.2) and friction times what the arm is
-    shorter (section 5.6). Plane strain."""
+    stands ahead, and friction times what the arm is shorter (Johnson, section 5.6). Plane strain."""
     def shear_and_poisson(bulk):
         return 0.5 * bulk, 2.0 / 7.0  # K = 2 G in three dimensions
 
-    (g1, nu1), (g2, nu2) = (shear_and_poisson(bulk) for bulk in BODIES[bodies][:2])
+    rubber, rock, stiffness = BODIES[bodies]
+    (g1, nu1), (g2, nu2) = shear_and_poisson(rubber), shear_and_poisson(rock)
     stiff = g1 * 2.0 / (1.0 - nu1)  # E / (1 - nu^2) of the cylinder
     both = 1.0 / (1.0 / stiff + (1.0 - nu2) / (2.0 * g2))
     beta = (0.5 * ((1.0 - 2.0 * nu1) / g1 - (1.0 - 2.0 * nu2) / g2)
             / ((1.0 - nu1) / g1 + (1.0 - nu2) / g2))
     force = fit.DENSITY * math.pi * fit.RADIUS**2 * fit.GRAVITY * math.cos(math.radians(tilt))
-    half = math.sqrt(4.0 * force * fit.RADIUS / (math.pi * both))  # of the strip of contact
-    k = math.atan(friction * beta) / math.pi
+    half = math.sqrt(4.0 * force * fit.RADIUS / (math.pi * both))  # of the strip without springs
     shorter = force / (math.pi * stiff) * (2.0 * math.log(4.0 * fit.RADIUS / half) - 1.0)
-    return 8.0 / 3.0 * k * half, friction * shorter
+    return pressure_ahead(half, both, beta, friction, stiffness), friction * shorter
 
 
 def report(bodies, motion, folder):

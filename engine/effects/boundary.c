@@ -12,6 +12,7 @@
 #include <stdio.h>
 
 #include "engine/core/mem.h"
+#include "engine/full_mass.h"
 #include "engine/step_implicit.h"
 
 #define AT(member) offsetof(pw_boundary_param, member)
@@ -141,11 +142,12 @@ static void hold(const pw_sim *sim, void *ctx, int part, int parts)
   }
 }
 
-/* Remapped velocities give the points no momentum; those of a further term of the mass matrix do. */
+/* Remapped velocities give the points no momentum; the second term of the mass matrix does. It is
+ * held at v(n), where whoever held the component last has put that of the first term, too. */
 static void hold_remapped(const pw_sim *sim, void *ctx, int part, int parts)
 {
   const boundary *c = ctx;
-  const bool counts = sim->node_slot == PW_NODE_VEL && sim->full_mass;
+  const bool adds = pw_full_mass_adding(sim);
   int first, last;
   pw_idx from, to;
   pw_effect_fields(sim, c->param->body, &first, &last);
@@ -155,8 +157,9 @@ static void hold_remapped(const pw_sim *sim, void *ctx, int part, int parts)
     for (pw_idx k = 0; k < c->n; k++) {
       pw_real *r = rec + (pw_off)c->node[k] * PW_NODE, *v = r + sim->node_slot;
       for (int a = 0; a < 2 && pw_nodes_in_part(&sim->nodes, f, c->node[k], from, to); a++) {
-        const pw_real held = c->fix[a] ? c->velocity[a] : v[a];
-        gained[2 * k + a] += counts ? r[PW_NODE_MASS] * (v[a] - held) : 0.0;
+        const pw_real own = adds ? r[PW_NODE_FORCE + a] : c->velocity[a];
+        const pw_real held = c->fix[a] ? own : v[a];
+        gained[2 * k + a] += adds ? r[PW_NODE_MASS] * (v[a] - held) : 0.0;
         v[a] = held;
       }
     }

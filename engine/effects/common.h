@@ -53,7 +53,9 @@ void pw_effect_fields(const pw_sim *sim, int b, int *first, int *last);
  *
  * The kinetic energy of the points changes by dt sum f_i . (v_i(n) + v_i) / 2, v_i the remapped
  * velocity (MUSL) or v_i(n+1). With the new velocity alone the balance of energies would drift in
- * proportion to the step. Slots then: VEL v(n+1), FORCE its increment, node_slot v_i.
+ * proportion to the step. Slots then: VEL v(n+1), FORCE its increment, node_slot v_i. With two terms
+ * of the mass matrix the points take their energy through another velocity, (2 I - A) v_i: the balance
+ * is off by a part of the kinetic energy that nodes do not see, which does not grow.
  */
 static inline pw_real pw_node_mean_velocity(const pw_sim *sim, const pw_real *rec, int a)
 {

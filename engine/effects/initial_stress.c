@@ -8,6 +8,7 @@
 #include <math.h>
 
 #include "engine/core/mem.h"
+#include "engine/full_mass.h"
 
 #define AT(member)     offsetof(pw_initial_stress_param, member)
 #define AT_ROW(member) offsetof(pw_ground_layer, member)
@@ -147,17 +148,20 @@ static pw_status displace(pw_sim *sim, void *ctx)
   return PW_OK;
 }
 
-/* Force that is left at a node of the body after every constraint: m dv / dt. */
+/* Force that is left at a node of the body after every constraint: m dv / dt, of lumped masses. */
 static pw_status measure(pw_sim *sim, void *ctx)
 {
   initial *c = ctx;
   if (c->measured) {
     return PW_OK;
   }
-  const pw_real *rec = pw_nodes_field(&sim->nodes, sim->body[c->body].field);
+  const int field = sim->body[c->body].field;
+  const pw_real *rec = pw_nodes_field(&sim->nodes, field);
+  const pw_real *first =
+      sim->full_mass ? pw_full_mass_field(sim->full_mass, field, sim->nodes.nnode) : rec;
   for (pw_idx k = 0; k < sim->nodes.nnode; k++) {
-    const pw_real *r = rec + (pw_off)k * PW_NODE;
-    pw_real ax = r[PW_NODE_FORCE] / sim->dt, ay = r[PW_NODE_FORCE + 1] / sim->dt;
+    const pw_real *r = rec + (pw_off)k * PW_NODE, *dv = first + (pw_off)k * PW_NODE + PW_NODE_FORCE;
+    pw_real ax = dv[0] / sim->dt, ay = dv[1] / sim->dt;
     pw_real mass = sim->measure * r[PW_NODE_MASS] * r[PW_NODE_ACTIVE];
     c->residual = pw_max(c->residual, mass * sqrt(ax * ax + ay * ay));
     c->weight = pw_max(c->weight, mass * c->gravity);

@@ -22,6 +22,7 @@
 #include <string.h>
 
 #include "engine/core/mem.h"
+#include "engine/full_mass.h"
 
 #define AT(member) offsetof(pw_prescribed_motion_param, member)
 
@@ -186,8 +187,8 @@ static pw_status drive(pw_sim *sim, void *ctx)
 
 static pw_status drive_remapped(pw_sim *sim, void *ctx)
 {
-  const motion *c = ctx;
-  if (!sim->structure_of[c->param->body]) {
+  const motion *c = ctx; /* without a first term there is no second */
+  if (!sim->structure_of[c->param->body] && !pw_full_mass_adding(sim)) {
     overwrite(sim, c, sim->node_slot);
   }
   return PW_OK;
