@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "kernels/transfer.h"
 
+#include <math.h>
 #include <string.h>
 
 #include "kernels/transfer_common.h"
@@ -50,7 +51,7 @@
   {                                                                                                \
     name, geometry, basis, vertices, weights, p2g_##tag, p2g_momentum_##tag, p2g_force_##tag,      \
         g2p_velocity_##tag, g2p_settle_##tag, p2g_remap_##tag, g2p_gradient_##tag,                 \
-        p2g_surface_##tag, support_of_##tag                                                        \
+        p2g_surface_##tag, p2g_extent_##tag, support_of_##tag                                      \
   }
 
 static const pw_kernels instances[] = {

@@ -13,6 +13,16 @@ enum { NODE = 8 }; /* reals in a nodal record, as in engine/nodes.h */
 /* Slots of a nodal record, as in engine/nodes.h. */
 enum { SLOT_VEL = 1, SLOT_FORCE = 3, SLOT_REMAP = 5 };
 
+/** A smaller weight is one by rounding: the place is beyond the node's cells. */
+#define EXTENT_WEIGHT 1e-9
+
+/** A place this far along direction d of a record (pw_kernels.p2g_extent). */
+static inline void raise_extent(pw_real *rec, int d, pw_real along)
+{
+  pw_real *extent = rec + PW_SURFACE_EXTENT + d;
+  *extent = along > *extent ? along : *extent;
+}
+
 /** Scatter what @p set selects; always a literal, so unused terms are compiled away. */
 enum { SET_MOMENTUM = 1, SET_FORCE = 2 };
 

@@ -9,15 +9,17 @@
 #include "engine/effects/contact.h"
 #include "tests/engine_helpers.h"
 
-/** The contacts. */
+/** The contacts; TEST_GAP is the frictional one where the gap closes. */
 typedef enum test_contact {
   TEST_PENALTY,
   TEST_FRICTIONAL,
   TEST_CORNER,
+  TEST_GAP,
   TEST_CONTACTS
 } test_contact;
 
-static const char *const test_contact_name[TEST_CONTACTS] = {"penalty", "frictional", "corner"};
+static const char *const test_contact_name[TEST_CONTACTS] = {"penalty", "frictional", "corner",
+                                                             "frictional with a gap"};
 
 /** Add a contact between bodies @p master and @p slave. */
 static inline void test_add_contact(pw_scene *scene, test_contact kind, int master, int slave,
@@ -46,7 +48,14 @@ static inline void test_add_contact(pw_scene *scene, test_contact kind, int mast
     p->friction = friction;
     p->require_compression = true;
     p->normal = PW_NORMAL_MASTER;
+    p->detection = kind == TEST_GAP ? PW_DETECT_CLOSED_GAP : PW_DETECT_SHARED_NODES;
   }
+}
+
+/** Acts on velocities at the nodes of the grid. */
+static inline bool test_acts_on_nodes(test_contact kind)
+{
+  return kind == TEST_FRICTIONAL || kind == TEST_GAP;
 }
 
 static inline pw_scene_body *test_disc(pw_scene *scene, int material, pw_real x, pw_real y,

@@ -74,7 +74,7 @@ static void slides_as_coulomb_says(void **state)
  * with the frictional contact: it sees the nodes' forces without those of the contact. */
 static pw_real creep(test_contact kind, pw_real friction)
 {
-  pw_sim *sim = incline(kind, friction, kind == TEST_FRICTIONAL ? 0.0 : 0.3);
+  pw_sim *sim = incline(kind, friction, test_acts_on_nodes(kind) ? 0.0 : 0.3);
   test_run_to(sim, 1.0);
   pw_real x = place(sim);
   test_run_to(sim, 2.0);

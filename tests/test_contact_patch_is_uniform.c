@@ -76,7 +76,7 @@ static void pressure_is_uniform(void **state)
   (void)state;
   const pw_real size[3] = {0.125, 2.0 / 13.0, 2.0 / 19.0};
   const pw_real most[TEST_CONTACTS] = {
-      [TEST_PENALTY] = 0.1, [TEST_FRICTIONAL] = 0.15, [TEST_CORNER] = 0.05};
+      [TEST_PENALTY] = 0.1, [TEST_FRICTIONAL] = 0.15, [TEST_CORNER] = 0.05, [TEST_GAP] = 0.15};
   for (int kind = 0; kind < TEST_CONTACTS; kind++) {
     for (int k = 0; k < 3; k++) {
       pw_sim *sim = blocks(kind, size[k], false);

@@ -158,6 +158,9 @@ static void single_effects_arrive(void **state)
   assert_int_equal(contact->master, 1);
   assert_int_equal(contact->slave, 0);
   assert_same(contact->friction, 0.2);
+  assert_int_equal(contact->normal, PW_NORMAL_AVERAGE);
+  assert_int_equal(contact->detection, PW_DETECT_CLOSED_GAP);
+  assert_true(contact->require_compression);
   assert_null(pw_scene_find_effect(&scene, "contact_penalty"));
 }
 

@@ -4,6 +4,8 @@
  * kernels/transfer_cpdi.inc). */
 #include "tests/harness.h"
 
+#include <float.h>
+
 #include "kernels/transfer.h"
 
 enum { NX = 8, NY = 7, ROW = NX + 1, NNODE = ROW * (NY + 1), LD = 64, NODE = 8, AXI = 1, CPDI = 2 };
@@ -331,9 +333,79 @@ static void weights_report_bad_points(void **state)
   assert_true(r.overrun >= 0 && r.overrun <= 5);
 }
 
+/* Bilinear shape function of node k at a place. */
+static pw_real hat(const world *w, int k, pw_real x, pw_real y)
+{
+  return pw_max(1.0 - fabs(x - node_x(w, k)) / cell, 0.0) *
+         pw_max(1.0 - fabs(y - node_y(w, k)) / cell, 0.0);
+}
+
+/* Farthest place from the origin along n, of those of point i that count at node k: corners of CPDI
+ * domains in the node's cells; all corners of boxes whose point has a weight there. */
+static pw_real farthest(const world *w, const pw_kernels *k, pw_idx i, int node, const pw_real *n)
+{
+  const pw_real *h = w->half;
+  pw_real side = sqrt(w->vol[i] / (k->geometry == AXI ? w->x[i] : 1.0)), far = -DBL_MAX;
+  pw_real box[4] = {h[i], 0.0, 0.0, h[3 * LD + i]};
+  pw_support s;
+  k->support(&w->t, i, &s);
+  for (int q = 0; q < 4; q++) {
+    pw_real a = q % 2 ? 1.0 : -1.0, b = q / 2 ? 1.0 : -1.0, d[2];
+    for (int c = 0; c < 2; c++) {
+      d[c] = k->basis == CPDI ? a * h[c * LD + i] + b * h[(2 + c) * LD + i]
+                              : a * box[c] + b * box[2 + c];
+      d[c] = k->basis == 0 ? 0.5 * side * (c == 0 ? a : b) : d[c];
+    }
+    bool counts = k->basis == CPDI && hat(w, node, w->x[i] + d[0], w->x[LD + i] + d[1]) > 1e-9;
+    for (int m = 0; m < s.n && k->basis != CPDI; m++) {
+      counts = counts || (s.node[m] == node && s.s[m] > 1e-9);
+    }
+    pw_real along =
+        n[0] * (w->x[i] + d[0] - w->t.origin[0]) + n[1] * (w->x[LD + i] + d[1] - w->t.origin[1]);
+    far = counts ? pw_max(far, along) : far;
+  }
+  return far;
+}
+
+/* How far bodies reach, by looking at every place of every point. */
+static void extents_are_those_of_the_domains(void **state)
+{
+  (void)state;
+  static world w;
+  for (int row = 0; pw_kernels_at(row); row++) {
+    const pw_kernels *k = pw_kernels_at(row);
+    uint64_t seed = 29;
+    int reached = 0;
+    world_init(&w, 2.0);
+    random_points(&w, k, 7);
+    weights(&w, k);
+    for (int n = 0; n < NNODE; n++) {
+      for (int d = 0; d < 2; d++) {
+        pw_real angle = 6.3 * test_random(&seed);
+        w.rec[n * NODE + 2 * d] = cos(angle);
+        w.rec[n * NODE + 2 * d + 1] = sin(angle);
+        w.rec[n * NODE + PW_SURFACE_EXTENT + d] = -DBL_MAX;
+      }
+    }
+    k->p2g_extent(&w.t, w.rec, 0, LD / 2);
+    k->p2g_extent(&w.t, w.rec, LD / 2, LD);
+    for (int n = 0; n < 2 * NNODE; n++) {
+      const pw_real *r = w.rec + n / 2 * NODE;
+      pw_real want = -DBL_MAX, got = r[PW_SURFACE_EXTENT + n % 2];
+      for (pw_idx i = 0; i < LD; i++) {
+        want = pw_max(want, farthest(&w, k, i, n / 2, r + n % 2 * 2));
+      }
+      assert_true(got == want || fabs(got - want) < 1e-14);
+      reached += want > -DBL_MAX;
+    }
+    assert_in_range(reached, 40, 2 * NNODE);
+  }
+}
+
 int main(void)
 {
   const struct CMUnitTest tests[] = {
+      cmocka_unit_test(extents_are_those_of_the_domains),
       cmocka_unit_test(linear_field_has_exact_gradient),
       cmocka_unit_test(scatter_conserves),
       cmocka_unit_test(cpdi_gradient_example),

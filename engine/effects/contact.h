@@ -29,12 +29,19 @@ typedef enum pw_contact_normal {
   PW_NORMAL_SLAVE
 } pw_contact_normal;
 
+/** Where the bodies of the frictional contact may push each other. */
+typedef enum pw_contact_detection {
+  PW_DETECT_SHARED_NODES,
+  PW_DETECT_CLOSED_GAP
+} pw_contact_detection;
+
 /** contact_frictional. */
 typedef struct pw_contact_frictional_param {
   int master, slave;
   pw_real friction;
   int normal;               /**< pw_contact_normal */
   bool require_compression; /**< only where the traction on the surface is not tensile */
+  int detection;            /**< pw_contact_detection */
 } pw_contact_frictional_param;
 
 /** contact_corner. */
