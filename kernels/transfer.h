@@ -50,7 +50,7 @@ typedef struct pw_gradients {
   pw_real du[5][PW_CHUNK];
 } pw_gradients;
 
-enum { PW_SURFACE_EXTENT = 6 }; /**< first of two slots of p2g_extent */
+enum { PW_SURFACE_EXTENT = 5 }; /**< first of the three slots of p2g_extent */
 
 enum { PW_SUPPORT = 16 }; /**< nodes of a point, at most */
 
@@ -95,10 +95,11 @@ typedef struct pw_kernels {
    *  surface, the outward normal times area (m2, per radian or metre); slots 2, 3, 4:
    *  sum_p V_p S_ip sigma_p (xx, yy, xy; J); slot 5: sum_p V_p S_ip (m3). */
   void (*p2g_surface)(const pw_transfer *t, pw_real *surface, pw_idx first, pw_idx last);
-  /** How far a body reaches along two directions, in slots 0, 1 and 2, 3 of @p surface
-   *  [nnode][PW_NODE]: raise slots PW_SURFACE_EXTENT and the next to the largest (x - origin) . n,
-   *  m, over the corners x of domains that have a weight at the node. Points of the linear basis
-   *  stand for squares of their area; of uGIMP all corners count where the domain has a weight. */
+  /** How far a body reaches along three directions n: those in slots 0, 1 and 2, 3 of @p surface
+   *  [nnode][PW_NODE], and slot 4 times their sum. Raise the three slots from PW_SURFACE_EXTENT on to
+   *  the largest (x - origin) . n, m, over the corners x of domains that have a weight at the node.
+   *  Points of the linear basis stand for squares of their area; of uGIMP all corners count where
+   *  the domain has a weight. */
   void (*p2g_extent)(const pw_transfer *t, pw_real *surface, pw_idx first, pw_idx last);
   /** Nodes and weights of point @p i, for systems of equations. Nodes without any weight are left
    *  out. */

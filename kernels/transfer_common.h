@@ -16,11 +16,13 @@ enum { SLOT_VEL = 1, SLOT_FORCE = 3, SLOT_REMAP = 5 };
 /** A smaller weight is one by rounding: the place is beyond the node's cells. */
 #define EXTENT_WEIGHT 1e-9
 
-/** A place this far along direction d of a record (pw_kernels.p2g_extent). */
-static inline void raise_extent(pw_real *rec, int d, pw_real along)
+/** A place as far as this along the three directions of a record (pw_kernels.p2g_extent). */
+static inline void raise_extents(pw_real *rec, pw_real a, pw_real b, pw_real c)
 {
-  pw_real *extent = rec + PW_SURFACE_EXTENT + d;
-  *extent = along > *extent ? along : *extent;
+  pw_real *extent = rec + PW_SURFACE_EXTENT;
+  extent[0] = a > extent[0] ? a : extent[0];
+  extent[1] = b > extent[1] ? b : extent[1];
+  extent[2] = c > extent[2] ? c : extent[2];
 }
 
 /** Scatter what @p set selects; always a literal, so unused terms are compiled away. */

@@ -384,21 +384,25 @@ static void extents_are_those_of_the_domains(void **state)
         pw_real angle = 6.3 * test_random(&seed);
         w.rec[n * NODE + 2 * d] = cos(angle);
         w.rec[n * NODE + 2 * d + 1] = sin(angle);
+      }
+      w.rec[n * NODE + 4] = test_random(&seed);
+      for (int d = 0; d < 3; d++) {
         w.rec[n * NODE + PW_SURFACE_EXTENT + d] = -DBL_MAX;
       }
     }
     k->p2g_extent(&w.t, w.rec, 0, LD / 2);
     k->p2g_extent(&w.t, w.rec, LD / 2, LD);
-    for (int n = 0; n < 2 * NNODE; n++) {
-      const pw_real *r = w.rec + n / 2 * NODE;
-      pw_real want = -DBL_MAX, got = r[PW_SURFACE_EXTENT + n % 2];
+    for (int n = 0; n < 3 * NNODE; n++) {
+      const pw_real *r = w.rec + n / 3 * NODE;
+      const pw_real along[6] = {r[0], r[1], r[2], r[3], r[4] * (r[0] + r[2]), r[4] * (r[1] + r[3])};
+      pw_real want = -DBL_MAX, got = r[PW_SURFACE_EXTENT + n % 3];
       for (pw_idx i = 0; i < LD; i++) {
-        want = pw_max(want, farthest(&w, k, i, n / 2, r + n % 2 * 2));
+        want = pw_max(want, farthest(&w, k, i, n / 3, along + n % 3 * 2));
       }
       assert_true(got == want || fabs(got - want) < 1e-14);
       reached += want > -DBL_MAX;
     }
-    assert_in_range(reached, 40, 2 * NNODE);
+    assert_in_range(reached, 60, 3 * NNODE);
   }
 }
 

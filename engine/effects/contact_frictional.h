@@ -11,12 +11,14 @@
  *
  * over the corners x of those domains that have a weight at the node (of points without domain:
  * of a square of their area). A gap above zero in any direction proves that these domains are apart,
- * and where flat faces meet, the largest gap is their distance. Two directions are tried: the normal
- * of the scene's choice, and that of both surfaces together, weighted by area, which is right above
- * the edge of either; the one with the larger gap is the direction of contact. The nodes of the cell
- * in which a corner lies all see this corner, so none of them lets it through. (Nairn, Hammerquist,
- * Smith, Comput. Methods Appl. Mech. Engng 362, 112859, 2020, find the plane between two bodies by
- * regression over their points, and the gap from deformed points as here.)
+ * and where flat faces meet, the largest gap is their distance. So three directions are tried, the
+ * normals of master and slave and the line that halves their angle, and the largest gap is taken. Near
+ * the edge of one body its own normal leans outwards, that of the other is right; where both end, the
+ * line between them is. The nodes of the cell in which a corner lies all see this corner, so none of
+ * them lets it through. (Nairn, Hammerquist, Smith, Comput. Methods Appl. Mech. Engng 362, 112859,
+ * 2020, find the plane between two bodies by regression over their points, and the gap from deformed
+ * points as here.) The impulses act along the normal of the scene's choice: outlines of soil are too
+ * rough to take the direction of the gap.
  */
 #ifndef PW_EFFECTS_CONTACT_FRICTIONAL_H
 #define PW_EFFECTS_CONTACT_FRICTIONAL_H

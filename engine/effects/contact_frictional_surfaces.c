@@ -198,8 +198,8 @@ static void set_normals(const pw_contact_surfaces *c)
   }
 }
 
-/* Ask how far both bodies reach towards each other, along the normal and along that of both
- * surfaces together. */
+/* Ask how far both bodies reach towards each other: along the normals of the master and of the slave
+ * and along the line that halves their angle. Where one has none, the other's is meant. */
 static void ask_extents(const pw_contact_surfaces *c)
 {
   pw_real *slave = surface_of(c, c->param->slave), *master = surface_of(c, c->param->master);
@@ -207,32 +207,31 @@ static void ask_extents(const pw_contact_surfaces *c)
     const pw_contact_node *at = &c->list[i];
     pw_real *a = slave + (pw_off)at->node * PW_NODE, *b = master + (pw_off)at->node * PW_NODE;
     pw_real n[4] = {at->normal[0], at->normal[1], at->normal[0], at->normal[1]};
-    unit_normal(c, at->node, a, b, PW_NORMAL_AVERAGE, n + 2);
+    unit_normal(c, at->node, a, b, PW_NORMAL_MASTER, n);
+    unit_normal(c, at->node, a, b, PW_NORMAL_SLAVE, n + 2);
+    const pw_real sum = hypot(n[0] + n[2], n[1] + n[3]);
     for (int k = 0; k < 4; k++) {
       a[k] = at->facing ? n[k] : 0.0;
       b[k] = -a[k];
     }
+    a[4] = b[4] = sum > 0.0 ? 1.0 / sum : 0.0;
     for (int k = PW_SURFACE_EXTENT; k < PW_NODE; k++) {
       a[k] = b[k] = -PW_HUGE;
     }
   }
 }
 
-/* Take the direction in which the bodies are farther apart. */
+/* The bodies are apart by the largest gap of the three directions. */
 static void set_gaps(const pw_contact_surfaces *c)
 {
   const pw_real *slave = surface_of(c, c->param->slave), *master = surface_of(c, c->param->master);
   for (pw_idx i = 0; i < c->count; i++) {
     pw_contact_node *at = &c->list[i];
-    const pw_off k = (pw_off)at->node * PW_NODE;
-    pw_real gap[2];
-    for (int d = 0; d < 2; d++) {
-      gap[d] = -(slave[k + PW_SURFACE_EXTENT + d] + master[k + PW_SURFACE_EXTENT + d]);
+    const pw_off k = (pw_off)at->node * PW_NODE + PW_SURFACE_EXTENT;
+    at->gap = 0.0;
+    for (int d = 0; d < 3; d++) {
+      at->gap = pw_max(at->gap, -(slave[k + d] + master[k + d]));
     }
-    const int best = gap[1] > gap[0];
-    at->normal[0] = slave[k + 2 * best];
-    at->normal[1] = slave[k + 2 * best + 1];
-    at->gap = pw_max(gap[best], 0.0);
   }
 }
 
