@@ -214,7 +214,8 @@ static void ask_extents(const pw_contact_surfaces *c)
       a[k] = at->facing ? n[k] : 0.0;
       b[k] = -a[k];
     }
-    a[4] = b[4] = sum > 0.0 ? 1.0 / sum : 0.0;
+    /* Of opposite normals the sum is rounding: then there is no line between them. */
+    a[4] = b[4] = sum > 0.1 ? 1.0 / sum : 0.0;
     for (int k = PW_SURFACE_EXTENT; k < PW_NODE; k++) {
       a[k] = b[k] = -PW_HUGE;
     }
