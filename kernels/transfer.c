@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "kernels/transfer.h"
 
-#include <math.h>
 #include <string.h>
 
 #include "kernels/transfer_common.h"

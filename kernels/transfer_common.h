@@ -6,6 +6,8 @@
 #ifndef PW_KERNELS_TRANSFER_COMMON_H
 #define PW_KERNELS_TRANSFER_COMMON_H
 
+#include <math.h>
+
 #include "kernels/transfer.h"
 
 enum { NODE = 8 }; /* reals in a nodal record, as in engine/nodes.h */
@@ -16,13 +18,19 @@ enum { SLOT_VEL = 1, SLOT_FORCE = 3, SLOT_REMAP = 5 };
 /** A smaller weight is one by rounding: the place is beyond the node's cells. */
 #define EXTENT_WEIGHT 1e-9
 
-/** A place as far as this along the three directions of a record (pw_kernels.p2g_extent). */
-static inline void raise_extents(pw_real *rec, pw_real a, pw_real b, pw_real c)
+/** How far a parallelogram of centre x, y and half-sides @p h reaches along the three directions of
+ *  a record (pw_kernels.p2g_extent). */
+static inline void raise_extents(pw_real *rec, pw_real x, pw_real y, const pw_real h[4])
 {
-  pw_real *extent = rec + PW_SURFACE_EXTENT;
-  extent[0] = a > extent[0] ? a : extent[0];
-  extent[1] = b > extent[1] ? b : extent[1];
-  extent[2] = c > extent[2] ? c : extent[2];
+  const pw_real n[6] = {
+      rec[0], rec[1], rec[2], rec[3], rec[4] * (rec[0] + rec[2]), rec[4] * (rec[1] + rec[3])};
+  for (int d = 0; d < 3; d++) {
+    const pw_real nx = n[2 * d], ny = n[2 * d + 1];
+    pw_real *extent = rec + PW_SURFACE_EXTENT + d;
+    const pw_real along =
+        nx * x + ny * y + fabs(nx * h[0] + ny * h[1]) + fabs(nx * h[2] + ny * h[3]);
+    *extent = along > *extent ? along : *extent;
+  }
 }
 
 /** Scatter what @p set selects; always a literal, so unused terms are compiled away. */

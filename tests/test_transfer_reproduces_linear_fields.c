@@ -333,36 +333,27 @@ static void weights_report_bad_points(void **state)
   assert_true(r.overrun >= 0 && r.overrun <= 5);
 }
 
-/* Bilinear shape function of node k at a place. */
-static pw_real hat(const world *w, int k, pw_real x, pw_real y)
-{
-  return pw_max(1.0 - fabs(x - node_x(w, k)) / cell, 0.0) *
-         pw_max(1.0 - fabs(y - node_y(w, k)) / cell, 0.0);
-}
-
-/* Farthest place from the origin along n, of those of point i that count at node k: corners of CPDI
- * domains in the node's cells; all corners of boxes whose point has a weight there. */
+/* Farthest corner of the domain of point i from the origin along n, if it has a weight at a node. */
 static pw_real farthest(const world *w, const pw_kernels *k, pw_idx i, int node, const pw_real *n)
 {
   const pw_real *h = w->half;
-  pw_real side = sqrt(w->vol[i] / (k->geometry == AXI ? w->x[i] : 1.0)), far = -DBL_MAX;
-  pw_real box[4] = {h[i], 0.0, 0.0, h[3 * LD + i]};
+  const pw_real side = sqrt(w->vol[i] / (k->geometry == AXI ? w->x[i] : 1.0));
+  pw_real far = -DBL_MAX;
   pw_support s;
   k->support(&w->t, i, &s);
-  for (int q = 0; q < 4; q++) {
-    pw_real a = q % 2 ? 1.0 : -1.0, b = q / 2 ? 1.0 : -1.0, d[2];
+  bool counts = false;
+  for (int m = 0; m < s.n; m++) {
+    counts = counts || (s.node[m] == node && s.s[m] > 1e-9);
+  }
+  for (int q = 0; counts && q < 4; q++) {
+    const pw_real a = q % 2 ? 1.0 : -1.0, b = q / 2 ? 1.0 : -1.0;
+    pw_real along = 0.0;
     for (int c = 0; c < 2; c++) {
-      d[c] = k->basis == CPDI ? a * h[c * LD + i] + b * h[(2 + c) * LD + i]
-                              : a * box[c] + b * box[2 + c];
-      d[c] = k->basis == 0 ? 0.5 * side * (c == 0 ? a : b) : d[c];
+      pw_real d = a * h[c * LD + i] + b * h[(2 + c) * LD + i];
+      d = k->basis == 0 ? 0.5 * side * (c == 0 ? a : b) : d;
+      along += n[c] * (w->x[c * LD + i] + d - w->t.origin[c]);
     }
-    bool counts = k->basis == CPDI && hat(w, node, w->x[i] + d[0], w->x[LD + i] + d[1]) > 1e-9;
-    for (int m = 0; m < s.n && k->basis != CPDI; m++) {
-      counts = counts || (s.node[m] == node && s.s[m] > 1e-9);
-    }
-    pw_real along =
-        n[0] * (w->x[i] + d[0] - w->t.origin[0]) + n[1] * (w->x[LD + i] + d[1] - w->t.origin[1]);
-    far = counts ? pw_max(far, along) : far;
+    far = pw_max(far, along);
   }
   return far;
 }

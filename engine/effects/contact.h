@@ -40,7 +40,7 @@ typedef struct pw_contact_frictional_param {
   int master, slave;
   pw_real friction;
   int normal;               /**< pw_contact_normal */
-  bool require_compression; /**< only where the traction on the surface is not tensile */
+  bool require_compression; /**< shared nodes: only where the traction is not tensile */
   int detection;            /**< pw_contact_detection */
 } pw_contact_frictional_param;
 

@@ -9,16 +9,16 @@
  *
  *   gap_i = min over B (x . n) - max over A (x . n)
  *
- * over the corners x of those domains that have a weight at the node (of points without domain:
- * of a square of their area). A gap above zero in any direction proves that these domains are apart,
+ * over the corners x of all domains that have a weight at the node (of points without domain: of a
+ * square of their area). A gap above zero in any direction proves that these domains are apart,
  * and where flat faces meet, the largest gap is their distance. So three directions are tried, the
  * normals of master and slave and the line that halves their angle, and the largest gap is taken. Near
  * the edge of one body its own normal leans outwards, that of the other is right; where both end, the
- * line between them is. The nodes of the cell in which a corner lies all see this corner, so none of
- * them lets it through. (Nairn, Hammerquist, Smith, Comput. Methods Appl. Mech. Engng 362, 112859,
+ * line between them is. (Nairn, Hammerquist, Smith, Comput. Methods Appl. Mech. Engng 362, 112859,
  * 2020, find the plane between two bodies by regression over their points, and the gap from deformed
  * points as here.) The impulses act along the normal of the scene's choice: outlines of soil are too
- * rough to take the direction of the gap.
+ * rough to take the direction of the gap. Where blocks of points take longer steps than others, their
+ * places are older than the gap: bodies may overlap by the way of one long step.
  */
 #ifndef PW_EFFECTS_CONTACT_FRICTIONAL_H
 #define PW_EFFECTS_CONTACT_FRICTIONAL_H
@@ -37,7 +37,7 @@ typedef struct pw_contact_node {
   bool touching;      /**< in this step */
   bool stuck;         /**< friction holds it */
   pw_real normal[2];  /**< out of the slave, unit */
-  pw_real gap;        /**< still to be closed along it, >= 0; m */
+  pw_real gap;        /**< that the bodies may still close, >= 0; m */
   pw_real impulse[2]; /**< on the master; N s (per metre or radian) */
   pw_real loss;       /**< energy lost, when slot FORCE holds v(n); J (likewise) */
 } pw_contact_node;
