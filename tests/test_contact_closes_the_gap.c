@@ -8,6 +8,13 @@
 
 static const pw_real CELL = 0.25, SPEED = 0.5;
 
+static void weigh_down(pw_scene *s, pw_real acceleration)
+{
+  pw_gravity_param *gravity = pw_scene_add_effect(s, "gravity");
+  gravity->acceleration_m_s2 = acceleration;
+  s->method.noise_damping_per_s = 20.0;
+}
+
 /* Top of the plate at `top`, the block `gap` above it; bodies of points of a third of a cell. */
 static pw_sim *faces(int basis, int geometry, pw_real top, pw_real gap, pw_real weight)
 {
@@ -23,9 +30,7 @@ static pw_sim *faces(int basis, int geometry, pw_real top, pw_real gap, pw_real 
   test_hold(&s, 0);
   test_add_contact(&s, TEST_GAP, 0, 1, 0.3, 0.0, 0.0);
   if (weight > 0.0) {
-    pw_gravity_param *gravity = pw_scene_add_effect(&s, "gravity");
-    gravity->acceleration_m_s2 = weight;
-    s.method.noise_damping_per_s = 20.0;
+    weigh_down(&s, weight);
   }
   return test_sim(&s, 1);
 }
@@ -95,11 +100,41 @@ static void rests_on_the_plate(void **state)
   }
 }
 
+/* A block two points wide rests on a wide plate: its corners lie in cells that its points are not
+ * in, and they too come no closer than the plate, wherever block and plate lie in their cells. */
+static void corners_of_a_narrow_block_rest_on_the_plate(void **state)
+{
+  (void)state;
+  for (int k = 0; k < 4; k++) {
+    static pw_scene s; /* large */
+    pw_scene_default(&s);
+    test_grid(&s, (pw_real[]){0.0, 3.0, 0.0, 3.0}, CELL);
+    const pw_real top = 0.83 + 0.05 * k, left = 1.18 + 0.06 * k;
+    int material = test_elastic(&s, 1e6, 0.3, 1000.0);
+    test_rectangle(&s, material, (pw_real[]){0.0, 3.0, 0.0, top}, CELL);
+    test_rectangle(&s, material, (pw_real[]){left, left + 2.0 * CELL, top + 0.01, top + 1.01},
+                   CELL);
+    test_hold(&s, 0);
+    test_add_contact(&s, TEST_GAP, 0, 1, 0.3, 0.0, 0.0);
+    weigh_down(&s, 10.0);
+    pw_sim *sim = test_sim(&s, 1);
+    pw_real deepest = 0.0;
+    while (sim->time < 1.0) {
+      assert_ok(pw_sim_step(sim, 0.0));
+      deepest = pw_min(deepest, bottom(sim) - top);
+    }
+    print_message("top %.2f m, block from %.2f m on: deepest %.1e m\n", top, left, deepest);
+    assert_true(deepest > -0.01 * CELL && fabs(bottom(sim) - top) < 0.01 * CELL);
+    pw_sim_destroy(&sim);
+  }
+}
+
 int main(void)
 {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(comes_as_far_as_the_plate),
       cmocka_unit_test(rests_on_the_plate),
+      cmocka_unit_test(corners_of_a_narrow_block_rest_on_the_plate),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }
