@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "kernels/transfer.h"
 
+#include <math.h>
 #include <string.h>
 
 #include "kernels/transfer_common.h"

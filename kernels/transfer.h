@@ -97,8 +97,9 @@ typedef struct pw_kernels {
   void (*p2g_surface)(const pw_transfer *t, pw_real *surface, pw_idx first, pw_idx last);
   /** How far a body reaches along three directions n: those in slots 0, 1 and 2, 3 of @p surface
    *  [nnode][PW_NODE], and slot 4 times their sum. Raise the three slots from PW_SURFACE_EXTENT on to
-   *  the largest (x - origin) . n, m, over all corners x of the domains of points that have a weight
-   *  at the node. Points of the linear basis stand for squares of their area. */
+   *  the largest (x - origin) . n, m, over all places x of domains with a weight at the node; of CPDI
+   *  domains only those in the node's cells. Points of the linear basis stand for squares of their
+   *  area. */
   void (*p2g_extent)(const pw_transfer *t, pw_real *surface, pw_idx first, pw_idx last);
   /** Nodes and weights of point @p i, for systems of equations. Nodes without any weight are left
    *  out. */

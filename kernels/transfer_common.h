@@ -6,8 +6,6 @@
 #ifndef PW_KERNELS_TRANSFER_COMMON_H
 #define PW_KERNELS_TRANSFER_COMMON_H
 
-#include <math.h>
-
 #include "kernels/transfer.h"
 
 enum { NODE = 8 }; /* reals in a nodal record, as in engine/nodes.h */
@@ -18,18 +16,62 @@ enum { SLOT_VEL = 1, SLOT_FORCE = 3, SLOT_REMAP = 5 };
 /** A smaller weight is one by rounding: the place is beyond the node's cells. */
 #define EXTENT_WEIGHT 1e-9
 
-/** How far a parallelogram of centre x, y and half-sides @p h reaches along the three directions of
- *  a record (pw_kernels.p2g_extent). */
-static inline void raise_extents(pw_real *rec, pw_real x, pw_real y, const pw_real h[4])
+/** A convex polygon: a parallelogram cut at the four sides of a cell has eight corners at most. */
+enum { CONVEX = 8 };
+typedef struct convex {
+  int n;
+  pw_real x[2][CONVEX];
+} convex;
+
+static inline void convex_add(convex *p, pw_real x, pw_real y)
+{
+  if (p->n < CONVEX) {
+    p->x[0][p->n] = x;
+    p->x[1][p->n++] = y;
+  }
+}
+
+/** The parallelogram of centre x, y and half-sides @p h. */
+static inline convex convex_of(pw_real x, pw_real y, const pw_real h[4])
+{
+  convex p = {0};
+  convex_add(&p, x - h[0] - h[2], y - h[1] - h[3]);
+  convex_add(&p, x + h[0] - h[2], y + h[1] - h[3]);
+  convex_add(&p, x + h[0] + h[2], y + h[1] + h[3]);
+  convex_add(&p, x - h[0] + h[2], y - h[1] + h[3]);
+  return p;
+}
+
+/** What of @p p is not beyond @p at along axis @p a: above it for side 1, below it for side -1. */
+static inline convex convex_cut(const convex *p, int a, pw_real side, pw_real at)
+{
+  convex out = {0};
+  for (int k = 0; k < p->n; k++) {
+    const int next = k + 1 < p->n ? k + 1 : 0;
+    const pw_real beyond = side * (p->x[a][k] - at), then = side * (p->x[a][next] - at);
+    if (beyond <= 0.0) {
+      convex_add(&out, p->x[0][k], p->x[1][k]);
+    }
+    if ((beyond < 0.0 && then > 0.0) || (beyond > 0.0 && then < 0.0)) {
+      const pw_real part = beyond / (beyond - then);
+      const pw_real other = p->x[!a][k] + part * (p->x[!a][next] - p->x[!a][k]);
+      convex_add(&out, a == 0 ? at : other, a == 0 ? other : at);
+    }
+  }
+  return out;
+}
+
+/** How far a polygon reaches along the three directions of a record (pw_kernels.p2g_extent). */
+static inline void raise_extents(pw_real *rec, const convex *p)
 {
   const pw_real n[6] = {
       rec[0], rec[1], rec[2], rec[3], rec[4] * (rec[0] + rec[2]), rec[4] * (rec[1] + rec[3])};
   for (int d = 0; d < 3; d++) {
-    const pw_real nx = n[2 * d], ny = n[2 * d + 1];
     pw_real *extent = rec + PW_SURFACE_EXTENT + d;
-    const pw_real along =
-        nx * x + ny * y + fabs(nx * h[0] + ny * h[1]) + fabs(nx * h[2] + ny * h[3]);
-    *extent = along > *extent ? along : *extent;
+    for (int k = 0; k < p->n; k++) {
+      const pw_real along = n[2 * d] * p->x[0][k] + n[2 * d + 1] * p->x[1][k];
+      *extent = along > *extent ? along : *extent;
+    }
   }
 }
 

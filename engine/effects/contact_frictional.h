@@ -9,8 +9,11 @@
  *
  *   gap_i = min over B (x . n) - max over A (x . n)
  *
- * over the corners x of all domains that have a weight at the node (of points without domain: of a
- * square of their area). A gap above zero in any direction proves that these domains are apart,
+ * over the places x of domains with a weight at the node: of CPDI domains their parts in the node's
+ * cells. (Their corners there are too little: a corner on the line of the next node has no weight here,
+ * and a narrow body would come through the edge that leads to it. Whole domains are too much: a body
+ * beside a curved one would be pushed early.) Of uGIMP the whole box counts, of points without domain a square
+ * of their area. A gap above zero in any direction proves that these domains are apart,
  * and where flat faces meet, the largest gap is their distance. So three directions are tried, the
  * normals of master and slave and the line that halves their angle, and the largest gap is taken. Near
  * the edge of one body its own normal leans outwards, that of the other is right; where both end, the
