@@ -50,7 +50,8 @@ typedef struct pw_gradients {
   pw_real du[5][PW_CHUNK];
 } pw_gradients;
 
-enum { PW_SURFACE_EXTENT = 5 }; /**< first of the three slots of p2g_extent */
+/** First and last of the three slots of p2g_extent. */
+enum { PW_SURFACE_EXTENT = 5, PW_SURFACE_ASKS = PW_SURFACE_EXTENT + 2 };
 
 enum { PW_SUPPORT = 16 }; /**< nodes of a point, at most */
 
@@ -95,7 +96,8 @@ typedef struct pw_kernels {
    *  surface, the outward normal times area (m2, per radian or metre); slots 2, 3, 4:
    *  sum_p V_p S_ip sigma_p (xx, yy, xy; J); slot 5: sum_p V_p S_ip (m3). */
   void (*p2g_surface)(const pw_transfer *t, pw_real *surface, pw_idx first, pw_idx last);
-  /** How far a body reaches along three directions n: those in slots 0, 1 and 2, 3 of @p surface
+  /** How far a body reaches, at the nodes where slot PW_SURFACE_ASKS is below PW_HUGE, along three
+   *  directions n: those in slots 0, 1 and 2, 3 of @p surface
    *  [nnode][PW_NODE], and slot 4 times their sum. Raise the three slots from PW_SURFACE_EXTENT on to
    *  the largest (x - origin) . n, m, over all places x of domains with a weight at the node; of CPDI
    *  domains only those in the node's cells. Points of the linear basis stand for squares of their

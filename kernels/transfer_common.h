@@ -61,6 +61,12 @@ static inline convex convex_cut(const convex *p, int a, pw_real side, pw_real at
   return out;
 }
 
+/** Whether a record asks for extents (pw_kernels.p2g_extent). */
+static inline bool asks(const pw_real *rec)
+{
+  return rec[PW_SURFACE_ASKS] < PW_HUGE;
+}
+
 /** How far a polygon reaches along the three directions of a record (pw_kernels.p2g_extent). */
 static inline void raise_extents(pw_real *rec, const convex *p)
 {

@@ -50,6 +50,5 @@ typedef struct pw_key {
 
 /** Smallest and largest accepted numbers for "any positive" and "any finite" ranges. */
 #define PW_TINY 1e-300
-#define PW_HUGE 1e300
 
 #endif /* PW_CORE_KEY_H */

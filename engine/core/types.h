@@ -39,4 +39,7 @@ static inline pw_real pw_max(pw_real a, pw_real b)
   return a > b ? a : b;
 }
 
+/** Larger than any quantity. */
+#define PW_HUGE 1e300
+
 #endif /* PW_CORE_TYPES_H */

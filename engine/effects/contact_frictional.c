@@ -26,8 +26,8 @@ static const pw_key keys[] = {
    "shared_nodes: contact only where the normal stress of the bodies is not tensile"},
   {"detection", PW_KEY_CHOICE, AT(detection), 0, 0, "shared_nodes", "shared_nodes|closed_gap", NULL,
    "where bodies may push: as soon as they share a node, a cell or two apart, as in the thesis; or "
-   "where the gap between their points' domains closes in the step; for soil that flows, whose "
-   "outline is rough, take contact_corner"},
+   "where the gap between their points' domains closes in the step; in soil that flows it wants "
+   "method.noise_damping_per_s, contact_corner does not"},
   {0}};
 /* clang-format on */
 

@@ -148,7 +148,8 @@ static void clear_surfaces(const pw_contact_surfaces *c)
   for (int s = 0; s < 2; s++) {
     pw_real *surface = surface_of(c, s == 0 ? c->param->slave : c->param->master);
     for (pw_idx i = 0; i < c->count; i++) {
-      memset(surface + (pw_off)c->list[i].node * PW_NODE, 0, PW_NODE * sizeof *surface);
+      pw_real *at = surface + (pw_off)c->list[i].node * PW_NODE;
+      memset(at, 0, PW_SURFACE_ASKS * sizeof *at);
     }
   }
 }
@@ -206,12 +207,15 @@ static void ask_extents(const pw_contact_surfaces *c)
   for (pw_idx i = 0; i < c->count; i++) {
     const pw_contact_node *at = &c->list[i];
     pw_real *a = slave + (pw_off)at->node * PW_NODE, *b = master + (pw_off)at->node * PW_NODE;
+    if (!at->facing) {
+      continue;
+    }
     pw_real n[4] = {at->normal[0], at->normal[1], at->normal[0], at->normal[1]};
     unit_normal(c, at->node, a, b, PW_NORMAL_MASTER, n);
     unit_normal(c, at->node, a, b, PW_NORMAL_SLAVE, n + 2);
     const pw_real sum = hypot(n[0] + n[2], n[1] + n[3]);
     for (int k = 0; k < 4; k++) {
-      a[k] = at->facing ? n[k] : 0.0;
+      a[k] = n[k];
       b[k] = -a[k];
     }
     /* Of opposite normals the sum is rounding: then there is no line between them. */
@@ -222,17 +226,18 @@ static void ask_extents(const pw_contact_surfaces *c)
   }
 }
 
-/* The bodies are apart by the largest gap of the three directions. */
+/* The bodies are apart by the largest gap of the three directions. The nodes ask no more. */
 static void set_gaps(const pw_contact_surfaces *c)
 {
-  const pw_real *slave = surface_of(c, c->param->slave), *master = surface_of(c, c->param->master);
+  pw_real *slave = surface_of(c, c->param->slave), *master = surface_of(c, c->param->master);
   for (pw_idx i = 0; i < c->count; i++) {
     pw_contact_node *at = &c->list[i];
-    const pw_off k = (pw_off)at->node * PW_NODE + PW_SURFACE_EXTENT;
+    pw_real *a = slave + (pw_off)at->node * PW_NODE, *b = master + (pw_off)at->node * PW_NODE;
     at->gap = 0.0;
-    for (int d = 0; d < 3; d++) {
-      at->gap = pw_max(at->gap, -(slave[k + d] + master[k + d]));
+    for (int k = PW_SURFACE_EXTENT; at->facing && k < PW_NODE; k++) {
+      at->gap = pw_max(at->gap, -(a[k] + b[k]));
     }
+    a[PW_SURFACE_ASKS] = b[PW_SURFACE_ASKS] = PW_HUGE;
   }
 }
 
@@ -264,6 +269,9 @@ pw_status pw_contact_surfaces_create(const pw_sim *sim, const pw_contact_frictio
   PW_TRY(pw_mem_alloc("surfaces", 2 * (pw_off)nnode * PW_NODE, sizeof(pw_real), &out->rec));
   PW_TRY(pw_mem_alloc("contact nodes", nnode, sizeof *out->list, &out->list));
   set_supports(sim, out->support);
+  for (pw_off k = 0; k < 2 * (pw_off)nnode; k++) {
+    out->rec[k * PW_NODE + PW_SURFACE_ASKS] = PW_HUGE;
+  }
   return PW_OK;
 }
 
