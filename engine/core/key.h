@@ -48,7 +48,7 @@ typedef struct pw_key {
   const char *meaning;  /**< one line for `pilewright keys` */
 } pw_key;
 
-/** Smallest and largest accepted numbers for "any positive" and "any finite" ranges. */
+/** Smallest accepted number where any positive one is; where any finite one is, PW_HUGE ends the range. */
 #define PW_TINY 1e-300
 
 #endif /* PW_CORE_KEY_H */
